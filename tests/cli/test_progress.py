@@ -19,7 +19,7 @@ from modefront.front.subproblems import Least
 from modefront.optim.sqp import Solution
 from modefront.study.estimate import SHORT, TIMED, duration, estimate
 from modefront.study.examples import write_example
-from modefront.work.progress import State, listening, note, note_iteration, together
+from modefront.work.progress import ITERATION, State, listening, note, together
 from modefront.work.task import Costs
 
 
@@ -38,7 +38,7 @@ def test_work_inside_a_long_task_is_seen_and_the_time_goes_on() -> None:
     now, costs.eigenproblems = 30.0, 143
     with listening(lines.hear):
         note("search 7 of 60")
-        note_iteration(12)
+        note(f"{ITERATION}12")
     note("heard by nobody")
     first, second = drawn(lines, 80)
     assert len(first) <= 80

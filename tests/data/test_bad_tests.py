@@ -167,6 +167,15 @@ def test_a_pair_that_was_hit_once_is_weighted_too(tmp_path: Path) -> None:
     assert weighting(data) == "residuals"
 
 
+@pytest.mark.filterwarnings("error")
+def test_numbers_beyond_all_are_refused_without_a_warning_of_arithmetic(tmp_path: Path) -> None:
+    path = tmp_path / "a.uff"
+    H = accelerances()[0, 0]
+    path.write_text(uff58(H, 1, 1).replace(f"{H[3].imag:13.5E}", "   9.0000E999", 1))
+    with pytest.raises(InputError, match=r"finite numbers up to 1e\+100, found "):
+        read_test(path)
+
+
 @pytest.mark.parametrize("number", ["-1.23456E+100", " -1.23456+100"])
 def test_numbers_that_overflow_are_refused(tmp_path: Path, number: str) -> None:
     path = tmp_path / "a.uff"
@@ -183,13 +192,13 @@ def test_a_table_that_ends_within_its_last_number_is_refused(tmp_path: Path, end
     rows = [f"{f:.9g},{np.sin(f):.9g},{np.cos(f):.9g}" for f in np.arange(1.0, 9.0)]
     text = "\n".join(["frequency,a_re,a_im", *rows]) + "\n" * ended
     path.write_text(text)
-    right = read_test_csv(path)
+    right, _ = read_test_csv(path)
     for lost in range(1 + ended, 10):
         path.write_text(text[:-lost])
         with pytest.raises(InputError, match="last line: expected whole lines to the end"):
             read_test_csv(path)
     path.write_text(text.rstrip("\n"))
-    np.testing.assert_array_equal(read_test_csv(path).channels[0].H, right.channels[0].H)
+    np.testing.assert_array_equal(read_test_csv(path)[0][0].H, right[0].H)
 
 
 @pytest.mark.parametrize(

@@ -42,7 +42,7 @@ def test_ascii_functions_are_read_with_either_exponent(tmp_path: Path, letter: s
     path = tmp_path / "a.uff"
     text = _ascii58(_values(letter), 9)
     path.write_text(text.replace("E+0", f"{letter}+0").replace("E-0", f"{letter}-0"))
-    (channel,) = read_uff(path).channels
+    (channel,) = read_uff(path)
     assert (channel.response, channel.reference, channel.quantity) == ("3Z", "7Z", "accelerance")
     assert channel.frequency == pytest.approx(1 + 0.5 * np.arange(9))
     assert channel.H == pytest.approx(-(np.arange(1, 19, 2) + 1j * np.arange(2, 20, 2)))
@@ -56,7 +56,7 @@ def test_binary_functions_are_read(tmp_path: Path) -> None:
     header = f"{58:6d}b{1:6d}{2:6d}{len(lines):12d}{len(body):12d}{0:6d}{0:6d}{0:12d}{0:12d}"
     text = "\n".join(["    -1", header, *lines]) + "\n"
     path.write_bytes(text.encode() + body + b"\n    -1\n")
-    (result,) = read_uff(path).channels
+    (result,) = read_uff(path)
     assert result.quantity == "receptance"
     assert result.H == pytest.approx(-H, rel=1e-6)
 
@@ -92,7 +92,7 @@ def test_binary_functions_of_pyuff_are_read_though_it_writes_a_wrong_size(
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", ResourceWarning)
             pyuff.UFF(str(path)).write_sets([written], "add")
-    channels = read_uff(path).channels
+    channels = read_uff(path)
     assert [channel.response for channel in channels] == ["1Z", "2Z"]
     assert np.array([channel.H for channel in channels]) == pytest.approx(H)
     assert channels[0].frequency == pytest.approx(x)
@@ -317,3 +317,9 @@ def test_records_that_never_move_are_left_out(tmp_path: Path, value: str) -> Non
     assert np.isnan(data.H[0, data.responses.index("still")]).all()
     assert np.isfinite(data.H[0, data.responses.index("top")]).all()
     assert "'still': empty or only zeros; the channel is left out" in "\n".join(data_set.warnings)
+
+
+def test_records_without_times_are_refused(tmp_path: Path) -> None:
+    (tmp_path / "a.csv").write_text("time,force,a\n,0,1\n,1,2\n,0,3\n")
+    with pytest.raises(InputError, match="columns: expected a time axis of even steps"):
+        read_test(tmp_path / "a.csv")

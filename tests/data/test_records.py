@@ -91,6 +91,7 @@ def test_files_of_a_set_are_measured_at_once_and_still_channels_are_left_out(
         (_csv("Zeit [s],a,b"), "", r"'columns' in \[\[set\]\] renames others"),
         (_csv("time,a,a"), "", "sensor 'a': expected each sensor once"),
         (_csv(rows=np.column_stack([T**2, *Y])), "", "time: expected a time axis of even steps"),
+        ("time,a,b\n,1,2\n,3,1\n,2,3\n", "", "time: expected ascending times"),
         (_csv(rows=np.column_stack([T, 0 * Y[0], 0 * Y[1]])), "", "a sensor that moves"),
         (_csv(), '[[set]]\nfiles = ["z.csv"]\n', "expected a sensor that another set has: a, b"),
         (_csv(), 'reference = ["a"]\n', "expected a known key"),
@@ -110,6 +111,7 @@ def test_arrays_need_a_rate_names_and_the_right_shape(tmp_path: Path) -> None:
     for shape, kind, more, message in (
         ((5, 5), float, "", "'rate' and 'sensors' in its"),
         ((5, 5), float, two, "samples by 2 sensors, which are real numbers, found 5 x 5 of float"),
+        ((0, 2), float, two, "which are real numbers, found 0 x 2 of float64"),
         ((5, 2), complex, two, "which are real numbers, found 5 x 2 of complex128"),
     ):
         np.save(tmp_path / "y.npy", np.zeros(shape, kind))

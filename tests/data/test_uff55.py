@@ -77,6 +77,14 @@ def test_complex_modes_of_several_sets_are_read_as_they_were_written(tmp_path: P
     assert x / z == pytest.approx(-0.5, rel=1e-4)
 
 
+def test_a_sensor_without_node_takes_none_that_another_has(tmp_path: Path) -> None:
+    shape = np.array([1.0, -0.5, 0.25], complex)
+    write_uff55(tmp_path / "a.uff", ["a"], [[(complex(-0.3, 25.0), shape)]], ["2X", "top", "1X"])
+    modes = read_uff55(tmp_path / "a.uff")
+    assert modes.measured == ("1X", "2X", "3X")
+    assert modes.shape[0, 0, :, 0] / modes.shape[0, 0, 1, 0] == pytest.approx([0.25, 1, -0.5])
+
+
 def system(kind: int, label: int = 4) -> dict[str, Any]:
     """A coordinate system whose x is the y of space, and y its z; its origin is at (0, 0, 1)."""
     rows = np.array([[0.0, 1, 0], [0, 0, 1], [1, 0, 0], [0, 0, 1]])
@@ -158,6 +166,14 @@ def test_a_study_takes_modes_from_a_universal_file(tmp_path: Path) -> None:
     result = loaded.problem.data.shape[0]
     np.testing.assert_allclose(result / result[:, :1], shape / shape[:, :1], rtol=1e-4)
     assert any("floor2 is reversed" in text for text in check(loaded).warnings)
+
+
+def test_a_universal_file_of_a_study_is_known_by_its_content(tmp_path: Path) -> None:
+    file = study(tmp_path, PLACES)
+    before = load(file).problem.data
+    (tmp_path / "modes.uff").rename(tmp_path / "modes.dat")
+    file.write_text(file.read_text(encoding="utf-8").replace("modes.uff", "modes.dat"), "utf-8")
+    np.testing.assert_array_equal(load(file).problem.data.shape, before.shape)
 
 
 @pytest.mark.parametrize(

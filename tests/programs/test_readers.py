@@ -304,6 +304,31 @@ def test_supports_of_abaqus_are_left_out(tmp_path: Path) -> None:
         job.dofs.sensor(3, "y")
 
 
+def test_sets_of_abaqus_may_be_those_of_elements(tmp_path: Path) -> None:
+    write_abaqus(tmp_path / "a", K, M, labels())
+    nodes = "".join(f"{node}, {node}., 0., 0.\n" for node in {node for node, _ in labels()})
+    sets = "*NSET, NSET=ENDS, ELSET=BEAM\n*NSET, NSET=OTHERS, INPUT=others.inp\n"
+    (tmp_path / "a.inp").write_text(f"*NODE\n{nodes}{sets}")
+    assert read("abaqus", tmp_path / "a").mesh is not None
+    (tmp_path / "a.inp").write_text(f"*NODE\n{nodes}*NSET, NSET=ENDS\n")
+    refused("abaqus", tmp_path / "a", "no nodes in it")
+
+
+def test_a_deck_of_abaqus_as_its_manual_has_it(tmp_path: Path) -> None:
+    write_abaqus(tmp_path / "a", K, M, labels())
+    nodes = "".join(f"{node}, {node}.D0, 0., 1-3\n" for node in {node for node, _ in labels()})
+    (tmp_path / "a.inp").write_text(f"*NODE,\nNSET=ALL\n{nodes}")
+    mesh = read("abaqus", tmp_path / "a").mesh
+    assert mesh is not None
+    assert mesh.coordinates[:, 2].tolist() == [1e-3] * len(mesh.number)
+    assert mesh.coordinates[:, 0].tolist() == mesh.number.tolist()
+    spring = "*ELEMENT, TYPE=SPRINGA, ELSET=S\n1, Part-1-1.5, Part-2-1.9\n"
+    (tmp_path / "a.inp").write_text(f"*PART, NAME=P\n*NODE\n{nodes}*END PART\n{spring}")
+    job = read("abaqus", tmp_path / "a")
+    assert job.mesh is None
+    assert "the deck numbers nodes in parts: coordinates are left out" in job.notes
+
+
 # OpenSees
 
 
@@ -390,6 +415,21 @@ def test_no_file_raises_anything_else(tmp_path: Path, program: str, content: byt
     for name in ("a", "a.full", "a.op4", "a.pch", "none/a", "folder.op4", "folder"):
         with pytest.raises(InputError):
             read(program, tmp_path / name)
+
+
+@pytest.mark.parametrize("spring", ["CELAS2,2,50.,1,1", "CELAS2,2,50.,,,1,1", "CBUSH,2,8,1"])
+def test_springs_of_nastran_to_the_ground_strain_in_a_translation(
+    tmp_path: Path, spring: str
+) -> None:
+    k = np.diag([100.0, 100, 100, 10, 10, 10])
+    stiffness = np.block([[k, -k], [-k, k]])
+    stiffness[0, 0] += 50.0
+    write_op4(tmp_path / "a.op4", {"KAA": stiffness, "MAA": np.eye(12)}, "sparse")
+    lines = ["BEGIN BULK", "GRID,1,,0.,0.,0.", "GRID,2,,0.,0.,0.", "CBUSH,1,7,1,2"]
+    (tmp_path / "a.bdf").write_text("\n".join([*lines, spring, "ENDDATA", ""]))
+    assert read("nastran", tmp_path / "a.op4").dofs.sensor(2, "y") == [(7, 1.0)]
+    (tmp_path / "a.bdf").write_text("\n".join([*lines, "ENDDATA", ""]))
+    refused("nastran", tmp_path / "a.op4", "a force at node 1 x in a translation of the whole")
 
 
 @pytest.mark.parametrize("default", [False, True])

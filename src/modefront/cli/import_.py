@@ -58,10 +58,11 @@ def _print(imported: Imported, files: Sequence[Path]) -> None:
     say(f"{terms.dofs.size} degrees of freedom")
     for note in imported.notes:
         say(f"  {note}")
-    for term in terms.terms:
-        rank = "" if term.rank is None else f", of rank {term.rank}"
-        size = f"{plural(term.dofs, 'degree')} of freedom"
-        say(f"{term.name}: {' and '.join(term.matrices)}, at {size}{rank}")
+    for name, (count, found) in terms.ranks.items():
+        rank = "" if found is None else f", of rank {found}"
+        size = f"{plural(count, 'degree')} of freedom"
+        of = [quantity for quantity, known in terms.matrices.items() if name in known]
+        say(f"{name}: {' and '.join(of)}, at {size}{rank}")
     for error in imported.errors:
         say(f"the run for checking is what the terms say, to {error:.1e} of the greatest entry")
     if not imported.errors:

@@ -16,9 +16,8 @@ from pathlib import Path
 import numpy as np
 
 from modefront._typing import Complexes, Floats
-from modefront.data.impact import TIME, Blow, Contents
 from modefront.data.modal import ModalData, Pairs
-from modefront.data.responses import Channel
+from modefront.data.responses import FORCE, TIME, Channel
 from modefront.errors import Fault, InputError, reason, refuse, suggestion
 from modefront.inputs import MOST_DATA, available_memory, ended_column, file_size, wrong
 from modefront.options import mapping, text
@@ -33,7 +32,7 @@ PAIR = "pair"
 SEPARATORS = ",;\t"
 
 STD = "_std"
-FREQUENCY, FORCE, COHERENCE = "frequency", "force", "_coherence"
+FREQUENCY, SECONDS, COHERENCE = "frequency", "time", "_coherence"
 PAIRS = (("_re", "_im"), ("_magnitude", "_rad"), ("_magnitude", "_deg"))  # endings of columns
 LISTED = 5  # faults that are listed of one file
 
@@ -386,19 +385,21 @@ def _pairs(table: Table, rows: Rows) -> Pairs:
     return tuple(sorted(pairs))
 
 
-def read_test_csv(path: Path, columns: Mapping[str, str] | None = None) -> Contents:
+def read_test_csv(
+    path: Path, columns: Mapping[str, str] | None = None
+) -> tuple[list[Channel], set[str]]:
     """Return the functions or the blow of one file, which does not say their reference.
 
-    ``columns`` maps names of the file, with or without the endings of columns of a response.
-    Raises InputError with what is wrong.
+    ``columns`` maps names of the file, with or without the endings of columns of a response; what
+    of them names a column is returned too. Raises InputError with what is wrong.
     """
     own, values = read_numbers(path, "a file of frequency response functions or records")
     endings = (*dict.fromkeys(end for pair in PAIRS for end in pair), COHERENCE)
     header, used = renamed(own, columns or {}, endings)
     column, file = dict(zip(header, values.T, strict=True)), str(path)
-    is_blow = TIME in header and FREQUENCY not in header
+    is_blow = SECONDS in header and FREQUENCY not in header
     forms, said = _forms(header) if not is_blow else ({}, [])
-    names = [name for name in header if name not in (TIME, FORCE)]
+    names = [name for name in header if name not in (SECONDS, FORCE)]
     if is_blow and FORCE not in header:
         said.append((repr(FORCE), "the record of the force", "no such column"))
     if is_blow and not names:
@@ -409,9 +410,10 @@ def read_test_csv(path: Path, columns: Mapping[str, str] | None = None) -> Conte
         for name, *each in [*twice, *said][:LISTED]
     )
     if is_blow:
-        records = {name: np.nan_to_num(column[name], nan=0.0) for name in names}  # empty columns
-        blow = Blow(file, "columns", "", column[TIME], column[FORCE], records)
-        return Contents(blows=(blow,), used=frozenset(used))
+        time, known = column[SECONDS], (file, "columns", "")
+        force = Channel(*known, FORCE, time, column[FORCE], FORCE, TIME)
+        rows = ((name, np.nan_to_num(column[name], nan=0.0)) for name in names)  # empty columns
+        return [force, *(Channel(*known, name, time, x, "", TIME) for name, x in rows)], used
     channels = []
     for name, pair in forms.items():
         first, second = (name + end for end in pair)
@@ -421,7 +423,7 @@ def read_test_csv(path: Path, columns: Mapping[str, str] | None = None) -> Conte
             coherence = None
         H = _function(path, {x: column[x] for x in (first, second)}, pair)
         channels.append(Channel(*place, column[FREQUENCY], H, coherence=coherence))
-    return Contents(tuple(channels), used=frozenset(used))
+    return channels, used
 
 
 def _function(path: Path, columns: Mapping[str, Floats], form: tuple[str, str]) -> Complexes:

@@ -5,9 +5,9 @@ greatest value, and gets there by more than the resolution of its numbers, is ov
 hit is a push beyond `SECOND` of the peak after the first impact has ended.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Annotated, Literal
+from typing import Annotated, Literal, TypeAlias
 
 import numpy as np
 import scipy
@@ -15,6 +15,7 @@ import scipy
 from modefront._typing import Complexes, Floats
 from modefront.data.responses import (
     EXPECTED,
+    FORCE,
     Channel,
     ForceNoise,
     FrequencyResponses,
@@ -31,7 +32,6 @@ EXPONENTIAL = Requirement(
     lambda value: np.inf if value == "none" else float(value),
 )
 
-TIME = "time"  # column of a CSV file with records
 EVEN = 1e-3  # relative difference within which steps of time are even: files hold few digits
 SECOND = 0.1  # force of a second hit over that of the first
 SAME = 1e-9  # difference of two samples, over the greatest, that is none: converters have 24 bits
@@ -190,26 +190,17 @@ def _clipped(x: Floats) -> bool:
     return bool(((end - start >= 3) & (leaps > 2 * least)).any())
 
 
-@dataclass(frozen=True)
-class Blow:
-    """The records of one impact."""
-
-    file: str  # file, place: where they were read
-    place: str
-    reference: str  # where the hammer hits; empty where the file does not say
-    time: Floats  # (samples,) in s
-    force: Floats  # (samples,)
-    responses: Mapping[str, Floats]  # records by name, (samples,) each
-    quantity: str = ""  # of responses over force; empty where the file does not say
+Blow: TypeAlias = Mapping[str, Channel]  # records of one impact by name, and that of the force
 
 
-@dataclass(frozen=True)
-class Contents:
-    """Contents of a file: functions, or the records of blows where there are no functions."""
-
-    channels: tuple[Channel, ...] = ()  # channels, blows: functions, and records
-    blows: tuple[Blow, ...] = ()
-    used: frozenset[str] = frozenset()  # what of the map of columns of a set names one of the file
+def blows_of(records: Iterable[Channel]) -> list[Blow]:
+    """Return the records of impacts: one ends where a channel comes again, or another force."""
+    groups: list[dict[str, Channel]] = [{}]
+    for record in records:
+        key = FORCE if record.quantity == FORCE else record.response
+        groups += [{}] if key in groups[-1] else []
+        groups[-1][key] = record
+    return [group for group in groups if FORCE in group and len(group) > 1]
 
 
 def averaged(blows: Sequence[Blow], windows: Windows) -> tuple[list[Channel], list[str], float]:
@@ -217,33 +208,41 @@ def averaged(blows: Sequence[Blow], windows: Windows) -> tuple[list[Channel], li
 
     Raises InputError where records do not fit, or no blow of a reference is left.
     """
-    time, faults = blows[0].time, list[Fault]()
+    time, faults = blows[0][FORCE].frequency, list[Fault]()
+    groups: dict[tuple[str, ...], list[Blow]] = {}
     for blow in blows:
-        steps = np.diff(blow.time)
-        if len(steps) < 2 or steps.min() <= 0 or np.ptp(steps) > EVEN * steps.mean():
-            faults.append(Fault(blow.file, blow.place, "a time axis of even steps", "another"))
-        elif len(blow.time) != len(time) or abs(np.ptp(blow.time) / np.ptp(time) - 1) > EVEN:
-            here, there = (f"{len(t)} samples over {np.ptp(t):.6g} s" for t in (blow.time, time))
-            expected = f"records of {there}, as in {blows[0].file}"
-            faults.append(Fault(blow.file, blow.place, expected, here))
-        elif not all((np.abs(x) <= LARGEST).all() for x in (blow.force, *blow.responses.values())):
-            faults.append(Fault(blow.file, blow.place, EXPECTED, "others"))
+        force, t = blow[FORCE], blow[FORCE].frequency
+        responses = [name for name in blow if name != FORCE]
+        groups.setdefault((force.reference, *responses), []).append(blow)
+        steps, quantities = np.diff(t), {blow[name].quantity for name in responses}
+        short = [record for record in blow.values() if len(record.H) != len(force.H)]
+        if short:
+            expected = f"{len(force.H)} samples, as the force of {force.place}"
+            faults.append(short[0].fault(expected, str(len(short[0].H))))
+        elif len(quantities) > 1:
+            found = ", ".join(sorted(each or "others" for each in quantities))
+            faults.append(force.fault("responses of one quantity", found))
+        elif len(steps) < 2 or not steps.min() > 0 or np.ptp(steps) > EVEN * steps.mean():
+            faults.append(force.fault("a time axis of even steps", "another"))
+        elif len(t) != len(time) or abs(np.ptp(t) / np.ptp(time) - 1) > EVEN:
+            here, there = (f"{len(x)} samples over {np.ptp(x):.6g} s" for x in (t, time))
+            expected = f"records of {there}, as in {blows[0][FORCE].file}"
+            faults.append(force.fault(expected, here))
+        elif not all((np.abs(record.H) <= LARGEST).all() for record in blow.values()):
+            faults.append(force.fault(EXPECTED, "others"))
     refuse(faults[:5])
-    groups: dict[tuple[str, tuple[str, ...]], list[Blow]] = {}
-    for blow in blows:
-        groups.setdefault((blow.reference, tuple(blow.responses)), []).append(blow)
     channels, warnings = list[Channel](), list[str]()
-    for (reference, names), group in groups.items():
-        first, place = group[0], f"blows at {reference!r}"
-        force = np.array([blow.force for blow in group])
-        records = np.array([list(blow.responses.values()) for blow in group])
+    for (reference, *names), group in groups.items():
+        first, place = group[0][FORCE], f"blows at {reference!r}"
+        forces = np.array([blow[FORCE].H for blow in group])
+        records = np.array([[blow[name].H for name in names] for blow in group])
         moving = np.ptp(records, axis=2).any(axis=0)
         if not moving.any():
             raise InputError(Fault(first.file, place, "a response that moves", "none"))
-        rate = (len(first.time) - 1) / float(np.ptp(first.time))
+        rate = (len(time) - 1) / float(np.ptp(first.frequency))
         try:
             result = impact_responses(
-                force, records * moving[:, None], rate, windows=windows, responses=names
+                forces, records * moving[:, None], rate, windows=windows, responses=tuple(names)
             )
         except ValueError as error:
             expected, _, found = str(error).removeprefix("expected ").partition(", found none: ")
@@ -253,10 +252,10 @@ def averaged(blows: Sequence[Blow], windows: Windows) -> tuple[list[Channel], li
             variance = None if data.variance is None else data.variance[0, k]
             known = first.file, f"response {name!r}", reference, name
             H = np.where(moving[k], data.H[0, k], 0)  # of a response that is still
-            values = data.frequency, H, first.quantity
+            values = data.frequency, H, group[0][name].quantity
             channels.append(Channel(*known, *values, variance=variance, noise=noise))
         warnings += [
-            f"{blow.file}: {blow.place}: the blow is left out: {why}"
+            f"{blow[FORCE].file}: {blow[FORCE].place}: the blow is left out: {why}"
             for blow, why in zip(group, result.left_out, strict=True)
             if why
         ]

@@ -12,10 +12,9 @@ import numpy as np
 
 from modefront import options as opt
 from modefront._typing import Floats
-from modefront.data.csv import COLUMNS, read_numbers, read_test_csv, renamed
-from modefront.data.impact import EVEN, TIME, Blow, Windows, averaged
-from modefront.data.responses import EXPECTED, ORDERS, Channel, DataSet, assemble
-from modefront.data.uff import TIME as OF_TIME
+from modefront.data.csv import COLUMNS, SECONDS, read_numbers, read_test_csv, renamed
+from modefront.data.impact import EVEN, Blow, Windows, averaged, blows_of
+from modefront.data.responses import EXPECTED, FRF, ORDERS, TIME, Channel, DataSet, assemble
 from modefront.data.uff import is_universal, read_functions, read_uff
 from modefront.errors import Fault, InputError, noted, refuse, suggestion
 from modefront.inputs import MOST_DATA, file_size, wrong
@@ -137,15 +136,15 @@ def _of_file(path: Path, setup: SetFiles) -> tuple[Sequence[str], Floats, float]
     if ending == ".csv":
         own, values = read_numbers(path, WHAT)
         header, _ = renamed(own, setup.columns, ())
-        if header.count(TIME) != 1 or len(header) < 2:
+        if header.count(SECONDS) != 1 or len(header) < 2:
             expected = "a column 'time' in s, and one for every sensor"
             expected += " ('columns' in [[set]] renames others)"
             raise wrong(path, expected, ", ".join(header[:6]), "line 1")
-        column = header.index(TIME)
-        names = [name for name in header if name != TIME]
+        column = header.index(SECONDS)
+        names = [name for name in header if name != SECONDS]
         rows = np.nan_to_num(np.delete(values, column, axis=1).T, nan=0.0)  # empty columns
         return names, rows, _rate(path, values[:, column])
-    functions = [x for kind, _, x in read_functions(path) if kind == OF_TIME]
+    functions = [x for x in read_functions(path) if x.kind == TIME]
     if not functions:
         expected = "records in time (functions of type 1) in dataset 58"
         raise wrong(path, expected, "none", "dataset 58")
@@ -180,7 +179,8 @@ def _of_array(path: Path, setup: SetFiles) -> tuple[Sequence[str], Floats, float
         raise wrong(path, expected, "nothing", "records")
     read, _ = isolated(f"{__name__}:read_arrays", path, "an array of numbers")
     arrays, count = list(read.values()), len(setup.sensors)
-    tables = [x for x in arrays if x.ndim == 2 and x.dtype.kind in "fiu" and count in x.shape]
+    real = [x for x in arrays if x.size and x.dtype.kind in "fiu"]
+    tables = [x for x in real if x.ndim == 2 and count in x.shape]
     if len(tables) != 1:
         expected = f"one array of samples by {count} sensors, which are real numbers"
         found = [f"{' x '.join(map(str, x.shape))} of {x.dtype}" for x in arrays]
@@ -192,7 +192,7 @@ def _of_array(path: Path, setup: SetFiles) -> tuple[Sequence[str], Floats, float
 def _rate(path: Path, time: Floats) -> float:
     """Return the samples per second of a time axis that is even but for its digits."""
     count, length = len(time) - 1, float(time[-1] - time[0])
-    if count < 2 or length <= 0:
+    if count < 2 or not length > 0:  # nor where the column is empty
         raise wrong(path, "ascending times", "others", "time")
     # Digits of times may move a sample by a part of a step.
     off = np.abs(time - time[0] - np.arange(count + 1) * (length / count)).max()
@@ -322,10 +322,14 @@ def _data_set(root: opt.Table, known: SetFiles) -> DataSet:
     channels, blows, used = list[Channel](), list[Blow](), set[str]()
     for file, reference in zip(known.files, known.references, strict=True):
         with noted(root.faults):
-            found = read_uff(file) if is_universal(file) else read_test_csv(file, known.columns)
-            channels += [replace(x, reference=reference or x.reference) for x in found.channels]
-            blows += [replace(x, reference=reference or x.reference) for x in found.blows]
-            used |= found.used
+            if is_universal(file):
+                found = read_uff(file)
+            else:
+                found, of_file = read_test_csv(file, known.columns)
+                used |= of_file
+            found = [replace(x, reference=reference or x.reference) for x in found]
+            channels += [x for x in found if x.kind == FRF]
+            blows += blows_of(x for x in found if x.kind == TIME)
     refuse(root.faults)
     place = f"[[set]] {known.name!r}"
     for unused in sorted(known.columns.keys() - used):
@@ -357,7 +361,7 @@ def _data_set(root: opt.Table, known: SetFiles) -> DataSet:
     for channel in channels:
         response, sign = channel_name(channel.response, names)
         reference, other = channel_name(channel.reference, names)
-        H = sign * other * channel.H
+        H = channel.H if sign == other else -channel.H
         named.append(replace(channel, reference=reference, response=response, H=H))
     out = assemble(named, known.quantity, known.name, turned, decay)
     return replace(out, warnings=(*warnings, *out.warnings))

@@ -58,17 +58,6 @@ class FrequencyResponses:
     decay: float = 0.0  # what an exponential window added to the decay rate of every pole, in 1/s
     force_noise: tuple[ForceNoise, ...] = ()  # at each reference, where all are known
 
-    def __post_init__(self) -> None:
-        """Raise ValueError where the arrays do not fit."""
-        expected = (len(self.references), len(self.responses), len(self.frequency))
-        for what, values in (("H", self.H), ("variance", self.variance)):
-            if values is not None and values.shape != expected:
-                raise ValueError(f"expected {what} of shape {expected}, found {values.shape}")
-        if self.quantity not in ORDERS:
-            raise ValueError(f"expected one of {', '.join(ORDERS)}, found {self.quantity!r}")
-        if not (np.isfinite(self.frequency).all() and (np.diff(self.frequency) > 0).all()):
-            raise ValueError("expected ascending frequencies")
-
     @property
     def measured(self) -> Bools:
         """Which lines of which functions were measured, of the shape of ``H``."""
@@ -132,17 +121,23 @@ def frequency_responses(
     )
 
 
+FRF, COHERENCE, TIME = 4, 6, 1  # kinds of channels, as dataset 58 of universal files has them
+FORCE = "force"  # quantity of the record of a hammer, which other records have not
+
+
+# 11 fields: where a channel is from, what it is of, its values, and what is known of their noise.
 @dataclass(frozen=True)
 class Channel:
-    """One measured function."""
+    """One measured function of frequency, or one record in time."""
 
     file: str  # file, place: where it was read
     place: str
     reference: str  # reference, response: names; the reference is empty where the file does not say
     response: str
-    frequency: Floats  # (lines,) in Hz
-    H: Complexes  # (lines,) complex
+    frequency: Floats  # (lines,) in Hz; of a record, time in s
+    H: Complexes | Floats  # (lines,) complex; real where it is no function
     quantity: str = ""  # what it is; empty where the file does not say
+    kind: int = FRF
     coherence: Floats | None = None  # (lines,), or None
     variance: Floats | None = None  # (lines,) of the mean, where it is known, or None
     noise: ForceNoise | None = None  # of the force of the blows, where it is known

@@ -19,15 +19,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from modefront._typing import Complexes, Floats, Ints
-from modefront.data.impact import Blow, Contents
+from modefront.data.impact import blows_of
 from modefront.data.modal import ModalData
-from modefront.data.responses import Channel
+from modefront.data.responses import COHERENCE, FORCE, FRF, TIME, Channel
 from modefront.errors import Fault, InputError, reason, refuse
 from modefront.inputs import MOST_DATA, counted, fortran, once, read_text_bytes, wrong
 from modefront.outputs import write_text
 from modefront.rounding import LARGEST
-
-FRF, COHERENCE, TIME = 4, 6, 1  # types of functions in dataset 58
 
 CLOSING = re.compile(rb"^[ ]{4}-1[ \t]*\r?$", re.MULTILINE)
 BINARY_CLOSING = re.compile(rb"    -1[ \t]*\r?(?=[\s\0\x1a]*(\Z|^    -1[ \t]*\r?\n))", re.MULTILINE)
@@ -50,9 +48,6 @@ OPENING = re.compile(
 HEADER, RECORD_7 = 11, 6  # lines of dataset 58 before its numbers; that with their number, from 0
 Point = tuple[int, int, Floats]  # a node: its number, displacement system and coordinates (3,)
 System = tuple[int, Floats]  # of coordinates: its type, its axes in rows and its origin (4, 3)
-Function = tuple[int, int, Channel]
-"""A dataset 58: its type, quantity of the numerator, and what it holds as a channel. Values have
-the signs of the directions: functions that of both, others that of the response."""
 
 
 @dataclass(frozen=True)
@@ -95,33 +90,26 @@ def _decoded(
     return out
 
 
-def read_functions(path: Path) -> list[Function]:
+def read_functions(path: Path) -> list[Channel]:
     """Return all datasets 58 of a universal file; raises InputError where it has none."""
     what = "a universal file with frequency response functions or records of blows (dataset 58)"
     return _decoded(path, what, 58, {58: _function})[58]
 
 
-def read_uff(path: Path) -> Contents:
+def read_uff(path: Path) -> list[Channel]:
     """Return the functions of a universal file with their coherence, or else the records of blows.
 
     Raises InputError where the file holds neither, is cut off or cannot be decoded.
     """
     functions = read_functions(path)
-    kinds = {kind for kind, *_ in functions}
+    kinds = {x.kind for x in functions}
     if FRF in kinds:
-        measured, others = ([x for kind, _, x in functions if kind == k] for k in (FRF, COHERENCE))
+        measured, others = ([x for x in functions if x.kind == kind] for kind in (FRF, COHERENCE))
         coherence = {(x.reference, x.response): np.abs(x.H) for x in others}
         pairs = ((x, coherence.get((x.reference, x.response))) for x in measured)
-        made = (replace(x, H=np.asarray(x.H, complex), coherence=known) for x, known in pairs)
-        return Contents(tuple(made))
-    # A blow ends where one of its channels comes again, or another force.
-    groups: list[dict[str, Channel]] = [{}]
-    for ordinate, record in ((x, record) for kind, x, record in functions if kind == TIME):
-        key = "" if ordinate in (9, 13) else record.response  # reaction and excitation forces
-        groups += [{}] if key in groups[-1] else []
-        groups[-1][key] = record
-    if blows := [_blow(group) for group in groups if "" in group and len(group) > 1]:
-        return Contents(blows=tuple(blows))
+        return [replace(x, H=np.asarray(x.H, complex), coherence=known) for x, known in pairs]
+    if blows := blows_of(x for x in functions if x.kind == TIME):
+        return [replace(x, H=np.asarray(x.H, float)) for blow in blows for x in blow.values()]
     expected = (
         "frequency response functions (type 4), or records in time (type 1) of the excitation "
         "force and of responses, among the functions of dataset 58"
@@ -129,21 +117,6 @@ def read_uff(path: Path) -> Contents:
     found = f"functions of type {', '.join(map(str, sorted(kinds)))} only"
     found += ", none of them a force and its responses" * (TIME in kinds)
     raise wrong(path, expected, found, "dataset 58")
-
-
-def _blow(group: Mapping[str, Channel]) -> Blow:
-    force = group[""]
-    for record in group.values():
-        if len(record.H) != len(force.H):
-            expected = f"{len(force.H)} samples, as the force of {force.place}"
-            raise InputError(record.fault(expected, str(len(record.H))))
-    quantity, *others = {group[name].quantity for name in group if name}
-    if others:
-        found = ", ".join(sorted(each or "others" for each in (quantity, *others)))
-        raise InputError(force.fault("responses of one quantity", found))
-    records = {name: np.asarray(record.H, float) for name, record in group.items()}
-    place = force.file, force.place, force.response, force.frequency
-    return Blow(*place, records.pop(""), records, quantity)
 
 
 def blocks(content: bytes, file: Path) -> list[Block]:
@@ -187,7 +160,11 @@ def reals(text: str) -> list[float]:
     return [fortran(word) for word in re.sub(r"(?<=[0-9.])(?=[+-][0-9]*\.)", " ", text).split()]
 
 
-def _function(block: Block) -> list[Function]:
+def _function(block: Block) -> list[Channel]:
+    """Return what a dataset 58 holds; values have the signs of the directions.
+
+    Functions have that of both, others that of the response.
+    """
     *lines, body = block.body.split(b"\n", HEADER)
     head = [line.decode("utf-8", "replace") for line in lines]
     columns = (0, 5, 15, 20, 30, 41, 51, 55, 66, 76, 80)
@@ -202,8 +179,11 @@ def _function(block: Block) -> list[Function]:
     (response, sign), (reference, other) = (_dof(six[k], six[k + 1]) for k in (5, 8))
     sign *= other if kind == FRF else 1
     place = f"{block.place}{f' of {reference} to {response}' * (kind == FRF)}"
+    quantity = QUANTITIES.get(ordinate, "")
+    if kind == TIME and ordinate in (9, 13):  # reaction and excitation forces
+        quantity, reference = FORCE, response
     named = str(block.file), place, reference, response
-    return [(kind, ordinate, Channel(*named, x, sign * data, QUANTITIES.get(ordinate, "")))]
+    return [Channel(*named, x, data if sign > 0 else -data, quantity, kind)]
 
 
 def _values(block: Block, body: bytes, record: tuple[int, int, int]) -> tuple[Floats, Any]:
@@ -236,7 +216,8 @@ def _values(block: Block, body: bytes, record: tuple[int, int, int]) -> tuple[Fl
         raise ValueError("a line with fewer values than one behind it")
     rows = numbers.reshape(-1, columns).T
     of_y = rows[1 - even :]
-    return rows[0], of_y[0] + 1j * of_y[1] if is_complex else of_y[0]
+    pairs = np.ascontiguousarray(of_y.T)
+    return rows[0], (pairs.view(complex) if is_complex else pairs)[:, 0]
 
 
 def _dof(node: str, direction: str) -> tuple[str, int]:
@@ -257,11 +238,13 @@ def write_uff55(
     """Write modes as complex eigenvectors of first order, dataset 55 (analysis type 3).
 
     ``modes`` holds, for every data set, poles in rad/s and complex shapes at the sensors; sensors
-    that are named by node and direction keep both, others are numbered from 1, in X. ``pairs``
-    holds positions of modes of one pole, for every data set; none unless given.
+    that are named by node and direction keep both, others have the first numbers that are left, in
+    X. ``pairs`` holds positions of modes of one pole, for every data set; none unless given.
     """
     matches = [re.fullmatch(r"([0-9]+)([XYZ])", name) for name in sensors]
-    numbers = [int(match[1]) if match else i for i, match in enumerate(matches, start=1)]
+    taken = {int(match[1]) for match in matches if match}
+    left = (number for number in range(1, 2 * len(sensors) + 1) if number not in taken)
+    numbers = [int(match[1]) if match else next(left) for match in matches]
     axes = ["XYZ".index(match[2]) if match else 0 for match in matches]
     nodes = list(dict.fromkeys(numbers))
     rows = [nodes.index(number) for number in numbers]
@@ -424,8 +407,10 @@ def _mode(block: Block) -> list[_Mode]:
     once(file, place, "each node", nodes)
     phi = np.array(values).reshape(-1, size, REAL[data]).astype(complex)
     shape = np.zeros((len(nodes), 6))
-    psi = phi @ [1, 1j][: REAL[data]]
-    shape[:, :size] = (psi * np.exp(-0.5j * np.angle((psi**2).sum()))).real  # the nearest real one
+    with np.errstate(all="ignore"):  # numbers that are too great are refused below
+        psi = phi @ [1, 1j][: REAL[data]]
+        turned = psi * np.exp(-0.5j * np.angle((psi**2).sum()))  # the nearest real one
+        shape[:, :size] = turned.real
     checks = [
         (not frequency > 0, "a frequency above 0 Hz", f"{frequency:g}"),
         (not 0 <= damping < 1, "a damping ratio from 0 to below 1", f"{damping:g}"),

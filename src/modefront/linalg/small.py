@@ -25,13 +25,12 @@ def eigh(A: Floats) -> tuple[Floats, Floats]:
     return lam, np.ascontiguousarray(V)
 
 
-def svd(A: Floats, full: bool = True) -> tuple[Floats, Floats, Floats]:
+def svd(A: Floats) -> tuple[Floats, Floats, Floats]:
     """Return U (m, m), the singular values, descending, and V^T (n, n) of a matrix (m, n).
 
-    If not ``full``, only the columns and rows that belong to the min(m, n) singular values.
     Raises LinAlgError where they cannot be computed, as of a matrix that is not finite.
     """
-    U, sigma, Vt, failed = _lapack.dgesdd(A, full_matrices=full)
+    U, sigma, Vt, failed = _lapack.dgesdd(A)
     if failed:
         raise np.linalg.LinAlgError("singular values did not converge")
     return np.ascontiguousarray(U), sigma, np.ascontiguousarray(Vt)

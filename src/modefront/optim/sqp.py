@@ -37,7 +37,7 @@ from modefront.optim.problem import DISTINCT, Evaluation, Problem, room
 from modefront.optim.qp import QuadraticProgramme
 from modefront.optim.scalarisation import Scalarisation
 from modefront.work.codec import record
-from modefront.work.progress import note_iteration
+from modefront.work.progress import ITERATION, note
 
 POOR, GOOD = 0.25, 0.7
 """Actual over predicted reduction below which the next step is shorter, and above which it may be
@@ -163,7 +163,7 @@ def solve(
     calm: tuple[float, Solution] | None = None  # where, and how long, steps promised only rounding
     while True:
         count += 1
-        note_iteration(count + 1)
+        note(f"{ITERATION}{count + 1}")
         if not local.y.size and local.f <= options.negligible:
             ended = Status.UNBOUNDED if local.f == -np.inf else Status.CONVERGED
             return Solution(evaluation, local.df, ended, count)

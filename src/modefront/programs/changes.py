@@ -5,7 +5,7 @@ From it, updated values can be written as lines of the deck.
 
 import json
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -16,7 +16,7 @@ from modefront.outputs import write_text
 NUMBER = re.compile(r"(?<![\w.])[+-]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d+|[+-]\d+)?(?![\w.])")
 """A number in a deck."""
 
-Numbers = list[tuple[tuple[int, int], float, float]]  # in a line: where, before and after a run
+COMMENTS = ("**", "$", "!", "#")  # how these begin, in one program or another
 
 SUFFIXES = (".inp", ".dat", ".bdf", ".nas", ".mac", ".py", ".tcl")
 CHANGES, KEPT = "changes.json", "deck-"
@@ -61,38 +61,29 @@ def times(
     return out
 
 
-def changes(parameter: str, nominal: Path, run: Path, factor: float) -> list[Change]:
-    """Return the lines in which a run multiplies numbers of the nominal deck by a factor."""
-    return [
-        Change(parameter, name, number, old, tuple(span for span, _, _ in pairs))
-        for name, number, old, pairs in _different_lines(nominal, run)
-        if pairs and all(x and abs(y / x / factor - 1) <= 1e-6 for _, x, y in pairs)
-    ]
+def changes(
+    parameter: str, nominal: Path, run: Path, factor: float
+) -> tuple[list[Change], tuple[float, int] | None]:
+    """Return the lines in which a run multiplies numbers of the nominal deck by a factor.
 
-
-def other_factor(nominal: Path, run: Path, factor: float) -> tuple[float, int] | None:
-    """Return the factor of all numbers that a run changes, and a line of it, if it is another."""
-    factors: dict[float, int] = {}
-    for _, number, old, pairs in _different_lines(nominal, run):
-        if old.lstrip().startswith(("**", "$", "!", "#")):
-            continue  # a comment, in one program or another
-        if pairs is None:
-            return None
-        for _, x, y in pairs:
-            factors.setdefault(float(f"{y / x:.6g}") if x else 0.0, number)
-    if len(factors) != 1:
-        return None
-    ((value, line),) = factors.items()
-    return None if value <= 0 or abs(value / factor - 1) < 1e-5 else (value, line)
-
-
-def _different_lines(nominal: Path, run: Path) -> Iterator[tuple[str, int, str, Numbers | None]]:
-    """Yield file, number and text of lines of the nominal deck that differ, and their numbers."""
+    If all numbers that it changes have another factor, this and a line of it are returned too.
+    """
     deck, lines = _deck(nominal), [deck_text(job).splitlines() for job in (nominal, run)]
-    if deck and len(lines[0]) == len(lines[1]):
-        for number, (old, new) in enumerate(zip(*lines, strict=True), start=1):
-            if old != new:
-                yield deck.name, number, old, _changed(old, new)
+    if not deck or len(lines[0]) != len(lines[1]):
+        return [], None
+    out, found = list[Change](), dict[float, int]()
+    for number, (old, new) in enumerate(zip(*lines, strict=True), start=1):
+        if old == new:
+            continue
+        spans, factors = _changed(old, new)
+        if spans and all(abs(x / factor - 1) <= 1e-6 for x in factors):
+            out.append(Change(parameter, deck.name, number, old, tuple(spans)))
+        if not old.lstrip().startswith(COMMENTS):
+            for x in factors:
+                found.setdefault(float(f"{x:.6g}"), number)
+    value, line = next(iter(found.items()), (0.0, 0))
+    is_other = len(found) == 1 and value > 0 and abs(value / factor - 1) >= 1e-5
+    return out, (value, line) if is_other else None
 
 
 def deck_text(job: Path) -> str:
@@ -135,14 +126,18 @@ def _deck(path: Path) -> Path | None:
     return next((x for x in decks if x.stat().st_size < 2**26), None)
 
 
-def _changed(old: str, new: str) -> Numbers | None:
-    """Return the numbers of a line that are others; None where anything else is different."""
+def _changed(old: str, new: str) -> tuple[list[tuple[int, int]], list[float]]:
+    """Return where numbers of a line are others, and their factors, 0 where there is none.
+
+    There is one factor of 0, and no place, where anything else is different.
+    """
     before, after = list(NUMBER.finditer(old)), list(NUMBER.finditer(new))
     rest = ["".join(NUMBER.sub("#", text).split()) for text in (old, new)]
     if len(before) != len(after) or rest[0] != rest[1]:
-        return None
+        return [], [0.0]
     pairs = [(a.span(), fortran(a[0]), fortran(b[0])) for a, b in zip(before, after, strict=True)]
-    return [(span, x, y) for span, x, y in pairs if x != y]
+    others = [(span, y / x if x else 0.0) for span, x, y in pairs if x != y]
+    return [span for span, _ in others], [factor for _, factor in others]
 
 
 def write_changes(path: Path, changes: Sequence[Change]) -> None:

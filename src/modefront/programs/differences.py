@@ -35,33 +35,22 @@ COVERED = 0.99  # share of an error within the terms of a parameter, from which 
 
 
 @dataclass(frozen=True, eq=False)
-class Term:
-    """One term of K and M."""
-
-    name: str  # as `modefront.models.parameters` has it
-    matrices: Mapping[Quantity, Matrix]  # symmetric ones by quantity; only those that are not zero
-    dofs: int = 0  # number of degrees of freedom on which the term acts
-    rank: int | None = None  # of the stiffness, or of the mass without one; None if not found
-
-
-@dataclass(frozen=True, eq=False)
 class Terms:
     """Base and terms of both matrices."""
 
     parameters: tuple[str, ...]  # names
-    base: Term  # the term that does not depend on parameters
-    terms: tuple[Term, ...]  # all others
+    # symmetric ones that are not zero, by the names of the terms: `BASE`, and then those of
+    # `modefront.models.parameters`
+    matrices: Mapping[Quantity, Mapping[str, Matrix]]
+    # by the names of the terms without the base: number of degrees of freedom on which each acts,
+    # and the rank of its stiffness, or of the mass without one; None if not found
+    ranks: Mapping[str, tuple[int, int | None]]
     dofs: DofTable  # degrees of freedom, those of the nominal run
-
-    def of(self, quantity: Quantity) -> dict[str, Matrix]:
-        """Return the matrices of a quantity by the names of the terms, the base first."""
-        every = (self.base, *self.terms)
-        return {x.name: x.matrices[quantity] for x in every if quantity in x.matrices}
 
     @property
     def coefficients(self) -> Monomials:
         """Coefficients of the terms without the base."""
-        return Monomials(term_exponents([x.name for x in self.terms], self.parameters))
+        return Monomials(term_exponents([*self.ranks], self.parameters))
 
 
 class Differences:
@@ -103,10 +92,10 @@ class Differences:
 
     def terms(self) -> Terms:
         """Return base and terms, those that are not zero; raises InputError for missing ones."""
-        terms: dict[str, dict[Quantity, Matrix]] = {}
-        base: dict[Quantity, Matrix] = {}
+        matrices, ranks = dict[Quantity, dict[str, Matrix]](), dict[str, tuple[int, int | None]]()
+        noise = ROUNDING * self.precision
         for quantity, A in self.nominal.matrices.items():
-            noise, rest = ROUNDING * self.precision, A
+            rest, found = A, dict[str, Matrix]()
             for name, row in zip(self.names[quantity], self._weights(quantity), strict=True):
                 term = scipy.sparse.csr_array(A.shape)
                 for weight, (_, differences) in zip(row, self._runs, strict=True):
@@ -115,19 +104,15 @@ class Differences:
                 limit = noise * np.abs(row).sum()
                 term = _above(_reduced(_above(term.tocsr(), A, limit), A, limit)[0], A, 0.0)
                 if term.nnz:
-                    terms.setdefault(name, {})[quantity] = term
-                    rest = rest - term
-            if (rest := _above(rest.tocsr(), A, noise)).nnz:
-                base[quantity] = rest
-        idle = ~term_exponents([*terms], self.parameters).any(axis=0)
+                    found[name], rest = term, rest - term
+                    if name not in ranks:
+                        ranks[name] = _reduced(term, A, noise)[1:]
+            rest = _above(rest.tocsr(), A, noise)
+            matrices[quantity] = {BASE: rest, **found} if rest.nnz else found
+        idle = ~term_exponents([*ranks], self.parameters).any(axis=0)
         for name in np.array(self.parameters)[idle][:1]:
             raise wrong(str(name), "a term of the stiffness or the mass", "zeros")
-        found = []
-        for name, matrices in terms.items():
-            first: Quantity = "stiffness" if "stiffness" in matrices else "mass"
-            _, size, rank = _reduced(matrices[first], self.nominal.matrices[first], noise)
-            found.append(Term(name, matrices, size, rank))
-        return Terms(self.parameters, Term(BASE, base), tuple(found), self.nominal.dofs)
+        return Terms(self.parameters, matrices, ranks, self.nominal.dofs)
 
     def _weights(self, quantity: Quantity) -> Floats:
         """Return the weights (terms, runs) of the differences of the runs in each term."""
@@ -152,9 +137,9 @@ class Differences:
         worst = 0.0
         for quantity, A in self.nominal.matrices.items():
             E = change = (job.matrices[quantity][order][:, order] - A).tocsr()
-            for shift, term in zip(shifts, terms.terms, strict=True):
-                if quantity in term.matrices:
-                    E = E - shift * term.matrices[quantity]
+            for name, shift in zip(terms.ranks, shifts, strict=True):
+                if name in terms.matrices[quantity]:
+                    E = E - shift * terms.matrices[quantity][name]
             noise = ROUNDING * max(self.precision, job.precision)
             noise *= max(1.0, float(np.abs(shifts).max(initial=1.0)))
             entries = scipy.sparse.coo_array(E)
@@ -189,9 +174,9 @@ class Differences:
 def _share(E: Matrix, terms: Terms, quantity: Quantity, names: Sequence[str]) -> float:
     """Return the share of the squares of E within the entries of the terms of parameters."""
     columns = [terms.parameters.index(name) for name in names]
-    acting: Bools = np.asarray(terms.coefficients.exponents[:, columns].any(axis=1))
-    found = [x.matrices.get(quantity) for x, acts in zip(terms.terms, acting, strict=True) if acts]
-    patterns = (abs(A).sign() for A in found if A is not None)
+    acting = terms.coefficients.exponents[:, columns].any(axis=1)
+    chosen, known = np.array([*terms.ranks])[acting].tolist(), terms.matrices[quantity]
+    patterns = (abs(known[name]).sign() for name in chosen if name in known)
     inside = E.multiply(sum(patterns, scipy.sparse.csr_array(E.shape)).sign()).tocsr()
     return float((inside.data**2).sum() / (E.data**2).sum())
 
@@ -265,7 +250,7 @@ def condensed(terms: Terms) -> tuple[Terms, int, int]:
     internal = np.flatnonzero(terms.dofs.node < 0)
     if internal.size == 0:
         return terms, 0, 0
-    stiffness, mass = terms.of("stiffness"), terms.of("mass")
+    stiffness, mass = dict(terms.matrices["stiffness"]), terms.matrices["mass"]
     inner = {name: abs(A[internal]) for name, A in stiffness.items()}
     zero = np.flatnonzero(sum(A[:, internal].diagonal() for A in inner.values()) == 0)
     if zero.size:
@@ -286,16 +271,12 @@ def condensed(terms: Terms) -> tuple[Terms, int, int]:
         stiffness[name], gone[part] = _eliminated(stiffness[name], internal[part], group[part])
     kept = np.setdiff1d(np.arange(terms.dofs.size), internal[gone])
 
-    def restricted(term: Term) -> Term:
-        both = dict(term.matrices)
-        if term.name in stiffness:
-            both["stiffness"] = stiffness[term.name]
-        rows = {x: A[kept][:, kept].tocsr() for x, A in both.items()}
-        return replace(term, matrices={x: A for x, A in rows.items() if A.nnz})
-
+    both: dict[Quantity, Mapping[str, Matrix]] = {"stiffness": stiffness, "mass": mass}
+    rows = {x: {name: A[kept][:, kept].tocsr() for name, A in of.items()} for x, of in both.items()}
+    matrices = {x: {name: A for name, A in of.items() if A.nnz} for x, of in rows.items()}
     dofs = DofTable(terms.dofs.node[kept], terms.dofs.direction[kept], terms.dofs.weight[kept])
-    base, others = restricted(terms.base), tuple(map(restricted, terms.terms))
-    return Terms(terms.parameters, base, others, dofs), int(gone.sum()), int((~gone).sum())
+    left = replace(terms, matrices=matrices, dofs=dofs)
+    return left, int(gone.sum()), int((~gone).sum())
 
 
 def _eliminated(A: Matrix, internal: Ints, groups: Ints) -> tuple[Matrix, Bools]:

@@ -11,7 +11,7 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.errors import reason
-from modefront.inputs import ended, wrong
+from modefront.inputs import ended, fortran, wrong
 from modefront.programs.base import ProgramMesh, mesh_of, refuse_unknown_nodes
 
 DEEPEST = 20  # decks that include each other, one in the other, at most
@@ -79,6 +79,7 @@ def read_deck(path: Path) -> Deck:
             deck.guides += [options.get(name, "") for name in ("REF NODE", "ROT NODE")]
         elif keyword in ("PART", "INSTANCE"):
             deck.parts = True
+            break
     if not deck.parts and not more:
         if not deck.nodes:
             raise wrong(path, "nodes (*NODE)", "none")
@@ -97,7 +98,7 @@ def deck_of(path: Path, notes: list[str], missing: str = "") -> Deck | None:
 
 def _blocks(path: Path, depth: int = 0) -> Iterator[tuple[str, dict[str, str], list[list[str]]]]:
     """Yield keyword, options and lines of numbers of every block, those of included files too."""
-    keyword, options, rows = "", dict[str, str](), list[list[str]]()
+    keyword, options, rows, head = "", dict[str, str](), list[list[str]](), ""
     if not path.is_file():  # what a deck includes may be elsewhere
         return
     with path.open(encoding="utf-8", errors="replace") as file:
@@ -105,7 +106,12 @@ def _blocks(path: Path, depth: int = 0) -> Iterator[tuple[str, dict[str, str], l
             text = line.strip()
             if text.startswith("**") or not text:
                 continue
-            if not text.startswith("*"):
+            if head.endswith(",") and text[0].isalpha():  # a keyword that goes on
+                head += text
+                keyword, options = keyword_of(head)
+                continue
+            head = text if text.startswith("*") else ""
+            if not head:
                 rows.append([item.strip() for item in text.split(",")])
                 continue
             if keyword:
@@ -132,7 +138,7 @@ def keyword_of(text: str) -> tuple[str, dict[str, str]]:
 def _nodes(deck: Deck, options: dict[str, str], rows: list[list[str]]) -> None:
     for row in rows:
         number = int(row[0])
-        point = [float(x or 0) for x in (*row[1:4], "", "", "")[:3]]
+        point = [fortran(x or "0") for x in (*row[1:4], "", "", "")[:3]]
         if not np.isfinite(point).all():
             raise ValueError(f"{', '.join(row)!r}")
         deck.nodes[number] = np.array(point)
@@ -155,7 +161,7 @@ def _elements(deck: Deck, options: dict[str, str], rows: list[list[str]]) -> Non
     expanded = re.match(r"S[3468]|M3D|CPS|CPE|CAX|B[23][123]|PIPE|T[23]D", name)
     target = deck.expanded if expanded else deck.others
     for number, *nodes in (each[: count + 1] if count else each for each in joined):
-        if (count and len(nodes) != count) or (number in deck.elements and not deck.parts):
+        if (count and len(nodes) != count) or number in deck.elements:
             raise ValueError(f"{len(nodes)} nodes of element {number}, or that element again")
         deck.elements.add(number)
         target.update(n for n in nodes if n)  # ends of networks are 0
@@ -166,7 +172,7 @@ def _elements(deck: Deck, options: dict[str, str], rows: list[list[str]]) -> Non
 
 
 def _add_set(deck: Deck, options: dict[str, str], rows: list[list[str]]) -> None:
-    if not options.get("NSET") or not rows:
+    if not options.get("NSET") or not (rows or options.keys() & {"ELSET", "INPUT"}):
         raise ValueError("no name NSET of the set, or no nodes in it")
     chosen = deck.sets.setdefault(options["NSET"].upper(), [])
     for row in rows:

@@ -135,6 +135,7 @@ def _check_labels(path: Path, deck: "Bulk", K: base.Matrix, dofs: DofTable, free
     joined = [*deck.links, *(tuple(nodes) for _, nodes in deck.elements.values())]
     for _ in range(2 if deck.followers else 1):  # followers join elements of their masters
         held |= {n for link in joined if held.intersection(link) for n in link}
+    held |= {n for link in joined if len(link) == 1 for n in link}  # springs to the ground
     strained = free & ~np.isin(dofs.node, list(held))
     for direction in (1, 2, 3):
         r = (free & (dofs.direction == direction)).astype(float)

@@ -37,7 +37,6 @@ from modefront.programs.changes import (
     Change,
     changes,
     deck_text,
-    other_factor,
     text_of,
     times,
     write_changes,
@@ -191,8 +190,9 @@ def import_model(
     changed: dict[str, list[Change]] = {}  # by the first run of each parameter
     for name, path, theta in runs:
         factor = float(theta[theta != 1][0])
-        changed.setdefault(name, changes(name, nominal_path, path, factor))
-        if differs := other_factor(nominal_path, path, factor):
+        of_run, differs = changes(name, nominal_path, path, factor)
+        changed.setdefault(name, of_run)
+        if differs:
             by, line = differs
             notes.append(
                 f"{name}: the decks differ by a factor of {by:g} (line {line}), but the run is "
@@ -270,7 +270,7 @@ def _runs(
 
 def model_of(terms: Terms) -> MatrixModel:
     """Return the model of terms, without sensors that mean anything."""
-    K, M = (terms.of(x) for x in QUANTITIES)
+    K, M = (terms.matrices[x] for x in QUANTITIES)
     return matrices(terms.parameters, K, M, {"first": 0}, floating=True)
 
 
@@ -282,7 +282,7 @@ def _frequencies(
     if modes == 0 or (modes is None and size > LARGE):
         notes.append("frequencies are not computed (--modes computes them)")
         return None, False
-    if not (mass := terms.of("mass")):
+    if not (mass := terms.matrices["mass"]):
         raise InputError(Fault("", "mass", "a mass matrix that is not zero", "only zeros"))
     progress("computing the frequencies of the nominal model")
     model = model_of(terms)
@@ -304,7 +304,7 @@ def _study(imported: Imported, folder: Path) -> str:
     quoted = partial(json.dumps, ensure_ascii=False)  # TOML has texts as JSON has them
     for quantity in QUANTITIES:
         files: dict[str, str] = {}
-        for name, A in imported.terms.of(quantity).items():
+        for name, A in imported.terms.matrices[quantity].items():
             files[name] = file_name(f"{quantity}-{name}", files.values())
             with output(folder / f"{files[name]}.npz") as stream:
                 scipy.sparse.save_npz(stream, A, compressed=False)

@@ -60,7 +60,7 @@ def read_data(root: Table, model: Model | None) -> ModalData | None:
         return None
     name, places, columns = table.value("file", FILE), None, dict[str, str]()
     covariance = table.value("covariance", COVARIANCE, None)
-    if name is not None and is_universal(name):
+    if name is not None and is_universal(table.path(name)):
         places = table.table("sensors", "a table, sensor = node and direction", None)
     else:
         columns = table.value("columns", COLUMNS, None) or {}
@@ -69,7 +69,7 @@ def read_data(root: Table, model: Model | None) -> ModalData | None:
         return None
     path, sensors, data = Path(name), model.sensors if model else None, None
     with root.noting():
-        if is_universal(name):
+        if is_universal(table.path(name)):
             modes = read_uff55(table.path(name))
             data = _of_nodes(table, places, modes, model) if model else None
         elif path.suffix.lower() == ".csv":

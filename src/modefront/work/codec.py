@@ -4,7 +4,6 @@ Fields hold records, arrays, numbers, texts, None, and tuples, lists and diction
 """
 
 from collections.abc import Mapping
-from dataclasses import is_dataclass
 from enum import Enum
 from typing import Any, TypeVar
 
@@ -65,13 +64,7 @@ def decode(value: Any, arrays: Mapping[str, Floats]) -> Any:
         return tuple(decode(part, arrays) for part in value["tuple"])
     if "map" in value:
         return {decode(k, arrays): decode(x, arrays) for k, x in value["map"]}
+    kind: Any = _REGISTERED[value.get("enum") or value["record"]]
     if "enum" in value:
-        kind = _REGISTERED[value["enum"]]
-        if not issubclass(kind, Enum):
-            raise ValueError(f"expected an enumeration, found {kind.__name__}")
         return kind[value["member"]]
-    kind = _REGISTERED[value["record"]]
-    if not is_dataclass(kind):
-        raise ValueError(f"expected a record, found {kind.__name__}")
-    fields = dict(value["fields"])
-    return kind(**{name: decode(part, arrays) for name, part in fields.items()})
+    return kind(**{name: decode(part, arrays) for name, part in dict(value["fields"]).items()})

@@ -145,11 +145,6 @@ def note(text: str) -> None:
     _LISTENER.get()(text)
 
 
-def note_iteration(number: int) -> None:
-    """Tell the listener which iteration the search at work has come to."""
-    note(f"{ITERATION}{number}")
-
-
 @contextmanager
 def listening(listener: Listener) -> Iterator[None]:
     """Send notes to a listener until the context ends."""

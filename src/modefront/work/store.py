@@ -10,7 +10,6 @@ import json
 import os
 import re
 import socket
-import tempfile
 import warnings
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -20,7 +19,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from filelock import FileLock, Timeout
+from filelock import FileLock, SoftFileLock, Timeout
 
 from modefront.errors import Fault, InputError, writing
 from modefront.outputs import write_bytes, write_text
@@ -113,12 +112,8 @@ def locked(folder: Path) -> Iterator[None]:
                     text = holder.read_text("utf-8", "replace")
                     known = clean(f"the run of {text}", NAME)
             found = f"{known}: wait until it has ended, or choose another folder with -o"
-            with tempfile.TemporaryDirectory(dir=folder / FOLDER) as probe:
-                try:
-                    with FileLock(Path(probe, FILE), fallback_to_soft=False):
-                        pass
-                except OSError:
-                    found += f"; if it was killed, remove '{path}', as this drive has no locks"
+            if isinstance(lock, SoftFileLock):  # which it has become on a drive without locks
+                found += f"; if it was killed, remove '{path}', as this drive has no locks"
             raise InputError(Fault(str(folder), "folder", "no other run in it", found)) from None
         except OSError:
             lock.release()

@@ -73,15 +73,15 @@ class Pool(Protocol):
 class LocalPool:
     """Processes of this machine, spawned, with one thread each.
 
-    They import the modules ``warm`` when they start, and with them what most tasks need. Where one
-    has ended, the executor ends the others, and new ones compute what is sent next.
+    They import `WARM` when they start, and with it what most tasks need. Where one has ended, the
+    executor ends the others, and new ones compute what is sent next.
     """
 
     lost: Errors = (BrokenProcessPool,)
     gone: Errors = ()
 
-    def __init__(self, count: int, warm: Sequence[str] = ()) -> None:
-        self.count, self._warm = count, warm
+    def __init__(self, count: int) -> None:
+        self.count = count
         self._start()
 
     @property
@@ -102,7 +102,7 @@ class LocalPool:
         spawn = multiprocessing.get_context("spawn")
         try:
             with _starting():
-                self._executor = ProcessPoolExecutor(self.count, spawn, _prepare, (self._warm,))
+                self._executor = ProcessPoolExecutor(self.count, spawn, _prepare)
                 # The executor starts a process a task, as long as none of them is idle.
                 self._first, *_ = [self._executor.submit(int) for _ in range(self.count)]
         except BaseException:  # an interrupt that was held back
@@ -119,7 +119,7 @@ class LocalPool:
             process.join()
 
 
-def _prepare(warm: Sequence[str]) -> None:
+def _prepare() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if hasattr(signal, "pthread_sigmask"):
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGTERM})
@@ -130,7 +130,7 @@ def _prepare(warm: Sequence[str]) -> None:
             os._exit(1)
 
     threading.Thread(target=end_with_parent, daemon=True).start()
-    for module in warm:
+    for module in WARM:
         importlib.import_module(module)
     _take_one_thread()
 
@@ -394,20 +394,15 @@ def _kind(task: Task[Any]) -> str:
 
 
 @contextmanager
-def backend(
-    workers: int, scheduler: str | None = None, warm: Sequence[str] = WARM
-) -> Iterator[Workers]:
+def backend(workers: int, scheduler: str | None = None) -> Iterator[Workers]:
     """Open the workers of so many processes, or of the cluster with this scheduler.
 
-    Processes import the modules ``warm`` when they start. Raises InputError for a number of
-    processes that is not possible, and what `Cluster` raises.
+    Raises InputError for a number of processes that is not possible, and what `Cluster` raises.
     """
     if not isinstance(workers, int) or not 1 <= workers <= MOST:
         raise wrong("workers", f"a whole number from 1 to {MOST}", workers)
     if scheduler is not None and workers > 1:
         raise wrong("workers", "1, since the cluster has its own", workers)
-    pool: Pool | None = Cluster(scheduler) if scheduler is not None else None
-    if workers > 1:
-        pool = LocalPool(workers, warm)
-    with Workers(pool) as out:
+    pool: Pool | None = LocalPool(workers) if workers > 1 else None
+    with Workers(Cluster(scheduler) if scheduler is not None else pool) as out:
         yield out
