@@ -96,10 +96,10 @@ def _coupling(X: Floats, coupling: Coupling) -> Followers:
 
 def _followers(X: Floats, slave: Ints, masters: Ints, weight: Floats, axes: list[int]) -> Followers:
     """Return rows of axes of slaves (slaves,) by factors (slaves, 6, k, 6) on their masters."""
-    count = len(masters)
-    columns = (6 * masters[:, :, None] + np.arange(6)).reshape(count, -1)
+    width = 6 * masters.shape[1]
+    columns = (6 * masters[:, :, None] + np.arange(6)).reshape(-1, width)
     columns, weight = np.repeat(columns, len(axes), axis=0), weight[:, axes]
-    rows = sparse_rows(weight.reshape(count * len(axes), -1), columns, 6 * len(X))
+    rows = sparse_rows(weight.reshape(-1, width), columns, 6 * len(X))
     return Followers((6 * slave[:, None] + np.array(axes)).ravel(), rows)
 
 
