@@ -55,19 +55,17 @@ def mesh_model(
     if missing := [name for name in built.parameters if name not in parameters]:
         expected = f"the structure's {', '.join(built.parameters)}"
         raise wrong("parameters", expected, f"no {missing[0]}")
-    own = [[float(x == name) for x in parameters] for name in built.parameters]
-    of = np.array(own).reshape(len(own), len(parameters))
-    pair = built.stiffness, built.mass
-    exponents = [A.coefficients.exponents for A in pair]
-    K, M = (
-        replace(A, coefficients=Monomials(e @ of)) for A, e in zip(pair, exponents, strict=True)
-    )
+    of = np.eye(len(parameters))[[list(parameters).index(name) for name in built.parameters]]
+    exponents = [A.coefficients.exponents for A in (built.stiffness, built.mass)]
+    K = replace(built.stiffness, coefficients=Monomials(exponents[0] @ of))
+    M = replace(built.mass, coefficients=Monomials(exponents[1] @ of))
     direction, X = built.dofs.free[:, 1], check_points(structure.nodes)
     types = {2: "line", 3: "triangle", 4: "quad", 8: "hexahedron", 10: "tetra10"}
     types |= {15: "wedge15", 20: "hexahedron20"}
-    cells = [np.atleast_2d(np.asarray(group.cells)) for group in structure.groups]
-    named = zip(structure.groups, cells, strict=True)
-    known = tuple(Cells(group.name, types[each.shape[1]], each) for group, each in named)
+    known = tuple(
+        Cells(group.name, types[np.shape(group.cells)[1]], np.asarray(group.cells))
+        for group in structure.groups
+    )
     translations = 6 * np.arange(len(X))[:, None] + np.arange(3)
     motion = csr_array(built.dofs.T[translations.ravel()])
     (at, along), count = built.places, len(structure.sensors)
