@@ -87,7 +87,8 @@ def _orientation(group: members.Beams, cells: Ints, axis: Floats) -> Floats:
     """Return vectors (elements, 3), or one for all, in the planes of axes and local y of beams."""
     section = group.section
     if group.orientation is None:
-        if section.I_y != section.I_z or section.kappa_y != section.kappa_z:
+        y, z = (section.I_y, section.kappa_y), (section.I_z, section.kappa_z)
+        if y != z or any(section.shear_centre):
             expected = "a vector in the plane of the beam's axis and its local y"
             found = "nothing, and the section is not the same in y and z"
             raise wrong("orientation", expected, found)
