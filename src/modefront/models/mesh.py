@@ -6,6 +6,7 @@ from functools import partial
 
 import numpy as np
 from scipy.sparse import csr_array
+from scipy.sparse.linalg import spsolve
 
 from modefront import fem
 from modefront.errors import wrong
@@ -66,6 +67,11 @@ def mesh_model(
         Cells(group.name, types[np.shape(group.cells)[1]], np.asarray(group.cells))
         for group in structure.groups
     )
+    moving = [(direction == d).astype(float) for d in range(3)]
+    if any(each.axes is not None for each in structure.supports):
+        # Nodes on supports in axes of their own follow the base as far as they are free to.
+        T = built.dofs.T
+        moving = [spsolve((T.T @ T).tocsc(), T[d::6].sum(axis=0)) for d in range(3)]
     translations = 6 * np.arange(len(X))[:, None] + np.arange(3)
     motion = csr_array(built.dofs.T[translations.ravel()])
     (at, along), count = built.places, len(structure.sensors)
@@ -77,11 +83,7 @@ def mesh_model(
         M,
         outputs={built.sensors[i]: built.selection[[i]].toarray()[0] for i in others},
         # Slaves of rigid links follow their masters, which is the same translation.
-        base={
-            name: (direction == d).astype(float)
-            for d, name in enumerate(fem.DIRECTIONS[:3])
-            if (direction == d).any()
-        },
+        base={name: r for name, r in zip(fem.DIRECTIONS, moving, strict=False) if r.any()},
         limits=tuple(limits_of(structure, X)),
         geometry=Geometry(X, known, motion, at[:count], along[:count, :3]),
         members=partial(fem.members_of, structure, built.dofs.T, *exponents),
