@@ -52,7 +52,6 @@ def mesh_model(
     """
     whole = replace(structure, sensors=(*structure.sensors, *outputs))
     built = fem.assemble(whole, floating=floating)
-    sensors, others = np.split(np.arange(len(built.sensors)), [len(structure.sensors)])
     if missing := [name for name in built.parameters if name not in parameters]:
         expected = f"the structure's {', '.join(built.parameters)}"
         raise wrong("parameters", expected, f"no {missing[0]}")
@@ -75,13 +74,14 @@ def mesh_model(
     translations = 6 * np.arange(len(X))[:, None] + np.arange(3)
     motion = csr_array(built.dofs.T[translations.ravel()])
     (at, along), count = built.places, len(structure.sensors)
+    rows = built.selection[count:].toarray()
     return MatrixModel(
         tuple(parameters),
-        tuple(built.sensors[i] for i in sensors),
-        built.selection[sensors],
+        built.sensors[:count],
+        built.selection[:count],
         K,
         M,
-        outputs={built.sensors[i]: built.selection[[i]].toarray()[0] for i in others},
+        outputs=dict(zip(built.sensors[count:], rows, strict=True)),
         # Slaves of rigid links follow their masters, which is the same translation.
         base={name: r for name, r in zip(fem.DIRECTIONS, moving, strict=False) if r.any()},
         limits=tuple(limits_of(structure, X)),

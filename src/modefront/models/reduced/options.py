@@ -92,9 +92,7 @@ class Reduction(Checked):
         return ReducedModel(
             model.sparse(),
             count,
-            np.array([each.nominal for each in parameters]),
-            np.array([each.lower for each in parameters]),
-            np.array([each.upper for each in parameters]),
+            *np.array([(each.nominal, *each.bounds) for each in parameters]).T.copy(),
             tolerance=TOLERANCE if isinstance(self.reduction, str) else self.reduction,
             memory=self.memory,
             spare=count - len(data.modes),
