@@ -1,6 +1,7 @@
 """A model that solves a sparse one a few times, and a small one in its place after that."""
 
 import time
+from collections.abc import Hashable
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from itertools import combinations, islice
@@ -30,9 +31,6 @@ WORST = 6  # models of a snapshot that are corrected at once, the worst ones
 TOLERANCE = 1e-8  # default relative error of eigenvalues
 MEMORY = 4.0  # default limit of the memory of a basis in GiB
 
-Key: TypeAlias = tuple[bytes, int, float, bool]
-"""What tells a snapshot from others."""
-
 
 @dataclass(frozen=True)
 class SnapshotRequest:
@@ -56,7 +54,7 @@ class SnapshotRequest:
         return list(np.atleast_2d(self.theta))
 
     @property
-    def key(self) -> Key:
+    def key(self) -> Hashable:
         """What tells the snapshot from others."""
         return self.theta.tobytes(), self.modes, self.enough, self.derivatives
 
@@ -88,7 +86,7 @@ class ReducedModel(Shown):
     snapshots: tuple[SnapshotRequest, ...] = ()
     # relative ones of eigenvalues, and those of shapes, at models by the bytes of theta
     errors: dict[bytes, tuple[Floats, Floats]] = field(default_factory=dict)
-    _taken: tuple[tuple[Key, Costs, float], ...] = ()  # of the basis
+    _taken: tuple[tuple[Hashable, Costs, float], ...] = ()  # of the basis
     _basis: bases.Basis | None = None
     _small: _Projected | None = None
 
@@ -104,7 +102,7 @@ class ReducedModel(Shown):
         return {**vars(self), **lost}
 
     @property
-    def version(self) -> tuple[Key, ...]:
+    def version(self) -> tuple[Hashable, ...]:
         """Snapshots in use."""
         return tuple(what.key for what in self.snapshots)
 
