@@ -92,8 +92,7 @@ def shell_sizes(X: Floats) -> Floats:
     extent = np.linalg.norm(np.ptp(X, axis=1), axis=1)[:, None]
     corners = corner_normals(X / np.where(extent > 0, extent, 1)[..., None])
     normal = corners.sum(1, keepdims=True)
-    length = np.linalg.norm(normal, axis=2, keepdims=True)
-    normal = np.divide(normal, length, out=np.zeros_like(normal), where=length > FLAT)
+    normal = normal / np.linalg.norm(normal, axis=2, keepdims=True).clip(FLAT)
     return np.asarray((corners * normal).sum(2).min(1))
 
 
