@@ -89,10 +89,13 @@ class Reduction(Checked):
         pays = share(model, count) <= 1 and columns(model, count) <= model.size / 2
         if self.reduction == "auto" and not pays:
             return model
+        nominal, lower, upper = np.array([(x.nominal, *x.bounds) for x in parameters]).T.copy()
         return ReducedModel(
             model.sparse(),
             count,
-            *np.array([(each.nominal, *each.bounds) for each in parameters]).T.copy(),
+            nominal,
+            lower,
+            upper,
             tolerance=TOLERANCE if isinstance(self.reduction, str) else self.reduction,
             memory=self.memory,
             spare=count - len(data.modes),
