@@ -89,13 +89,12 @@ class Reduction(Checked):
         pays = share(model, count) <= 1 and columns(model, count) <= model.size / 2
         if self.reduction == "auto" and not pays:
             return model
-        nominal, lower, upper = np.array([(x.nominal, *x.bounds) for x in parameters]).T.copy()
         return ReducedModel(
             model.sparse(),
             count,
-            nominal,
-            lower,
-            upper,
+            np.array([each.nominal for each in parameters]),
+            np.array([each.lower for each in parameters]),
+            np.array([each.upper for each in parameters]),
             tolerance=TOLERANCE if isinstance(self.reduction, str) else self.reduction,
             memory=self.memory,
             spare=count - len(data.modes),
