@@ -11,7 +11,7 @@ from scipy.sparse.linalg import eigsh
 from modefront import fem
 from modefront._typing import Floats, Ints
 from modefront.fem.elements.beam import beam
-from modefront.fem.elements.common import ByPower, Matrices, elasticity
+from modefront.fem.elements.common import ByPower, Matrices, elasticity, frame
 from modefront.fem.elements.shapes import CUBE_EDGES, TETRAHEDRON_EDGES, WEDGE_EDGES, Edges
 from modefront.fem.elements.shell import directors, narrowness, shell
 from modefront.fem.elements.solid import solid
@@ -73,9 +73,10 @@ def _quadratic(corners: Floats, edges: Edges, curved: float = 0.0) -> Floats:
 
 
 def _beam(X: Floats, r: Floats) -> Matrices:
-    axis = X[:, 1] - X[:, 0]
+    axis = np.diff(X, axis=1)[:, 0]
     side = np.cross(axis, axis[:, [1, 2, 0]] + np.array([0.3, 0, 0]))
-    return beam(X, STEEL, SECTION, side, r)[0]
+    flexible = axis + r[1] - r[0]
+    return beam(frame(flexible, side), np.linalg.norm(flexible, axis=1), r, STEEL, SECTION)[0]
 
 
 def _shell(X: Floats, thickness: float, offset: float) -> Matrices:

@@ -189,6 +189,17 @@ def test_link_is_the_exact_transformation() -> None:
     assert frequencies(offset, 6) == pytest.approx(frequencies(linked, 6), rel=1e-8)
 
 
+def test_a_link_of_a_master_to_itself_is_none() -> None:
+    X, cells = fem.grids.line(np.zeros(3), np.array([1.0, 0, 0]), 2)
+    beam = (fem.Beams("beam", cells, STEEL, fem.circle(0.1)),)
+    plain = fem.Structure(X, beam, (fem.Support(0),))
+    K, linked = (
+        fem.assemble(each).stiffness.at(NONE).toarray()
+        for each in (plain, replace(plain, links=(fem.Link(1, [1]),)))
+    )
+    assert np.array_equal(K, linked)
+
+
 def test_partial_link_leaves_the_other_directions_free() -> None:
     X = np.array([[0, 0, 0], [0, 0, 1.0], [1.0, 0, 0], [1.0, 0, 1.0]])
     group = (fem.Beams("c", np.array([[0, 1], [2, 3]]), STEEL, fem.circle(0.1)),)

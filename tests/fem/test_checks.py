@@ -53,6 +53,10 @@ WRONG: dict[str, tuple[fem.Structure, str]] = {
         _with_group(BEAM, section=fem.rectangle(0.1, 0.2)),
         r"group 'beam' orientation: expected a vector .*, found nothing",
     ),
+    "no orientation of a shear centre": (
+        _with_group(BEAM, section=fem.Section(1e-2, 1e-6, 1e-6, 1e-6, shear_centre=(0.02, 0.0))),
+        r"group 'beam' orientation: expected a vector .*, found nothing",
+    ),
     "bow-tie": (
         _with_group(PLATE, cells=SWAPPED),
         r"group 'plate' element 4 \(nodes 5, 10, 9, 6\): .* found (zero|negative) area",

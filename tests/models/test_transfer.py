@@ -171,6 +171,23 @@ def test_a_mesh_is_what_its_matrices_are(elements: int) -> None:
         assert products(first) == pytest.approx(products(other), rel=1e-6, abs=1e-9)
 
 
+def test_a_base_moves_a_mass_on_an_inclined_support_as_far_as_it_slides() -> None:
+    slide = fem.Support(0, ("x",), axes=((1.0, 2.0, 0.0), (0.0, 1.0, 0.0)))
+    structure = fem.Structure(
+        nodes=np.zeros((1, 3)),
+        springs=(fem.Spring("k", 0, 400.0, "x"),),
+        masses=(fem.Mass("m", 0, 3.0),),
+        supports=(slide, fem.Support(0, ("z", "rx", "ry", "rz"))),
+        sensors=(fem.Sensor("u", 0, "x"),),
+        parameters=(fem.Parameter("k", "spring", ("k",)),),
+    )
+    model = mesh_model(structure, ["k"])
+    assert model.directions == ("x", "y")
+    for direction, along in (("x", 4 / 5), ("y", 1 / 5)):  # squares of (2, -1) / sqrt(5)
+        result = model.transfer(np.ones(1), 1, LoadCase(({"u": 1.0},), base=direction))
+        assert result.input**2 == pytest.approx(3.0 * along)
+
+
 def test_static_deflection_of_a_cantilever() -> None:
     """F (3 L x^2 - x^3) / 6EI half-way up; shear adds less than a thousandth."""
     model = cantilever(20)

@@ -31,7 +31,9 @@ from modefront.linalg.affine import Members, Monomials, SparseAffine, sparse_aff
 from modefront.linalg.factorisation import Factorisation, SingularMatrixError, factorise
 from modefront.rounding import WRITTEN
 
-OF_STIFFNESS, OF_MASS = ("E", "spring"), ("density", "mass")  # quantities that are their factors
+LINEAR = {"stiffness": ("E", "spring"), "mass": ("density", "mass"), "prestress": ("prestress",)}
+"""Quantities that are plain factors of what a block has by these names."""
+
 SensorPlaces = tuple[Ints, Floats]  # nodes (sensors,), and weights (sensors, 6) of their DOFs
 
 
@@ -95,9 +97,9 @@ def assemble(structure: Structure, *, floating: bool = False) -> StructureMatric
         raise wrong("structure", "at least one degree of freedom that is free", "none")
     K, M = (_Terms(dofs.T, structure.parameters) for _ in range(2))
     for block in blocks:
-        K.add(block, block.name, block.stiffness, OF_STIFFNESS)
-        M.add(block, block.name, block.mass, OF_MASS)
-        K.add(block, block.name, block.prestress, ("prestress",))
+        K.add(block, block.name, block.stiffness, "stiffness")
+        M.add(block, block.name, block.mass, "mass")
+        K.add(block, block.name, block.prestress, "prestress")
     factor = _stable(K.total()) if forces and not floating else None
     for load, f in zip(structure.loads, forces, strict=True):
         if factor is None:
@@ -108,7 +110,7 @@ def assemble(structure: Structure, *, floating: bool = False) -> StructureMatric
             if block.internal is not None:
                 strain = load.strains.get(block.name, 0.0)
                 made = block.internal().stiffness(u[block.dofs()], strain)
-                K.add(block, load.name, {0: made}, ("prestress",))
+                K.add(block, load.name, {0: made}, "prestress")
     prestressed = forces or any(block.prestress for block in blocks)
     if prestressed and not floating and _stable(K.total()) is None:
         expected = "loads and forces below the critical ones"
@@ -126,17 +128,14 @@ def _existing(X: Floats, blocks: list[Block], following: list[Followers]) -> Boo
         parts = [part for each in terms for part in each.values()]
         used = np.any([np.diagonal(part, axis1=1, axis2=2) != 0 for part in parts], axis=0)
         exists.ravel()[block.dofs()[used]] = True
-    for each in following:
-        exists.ravel()[each.slave] = True
-        exists.ravel()[each.weight.indices] = True
+    for slave, weight in following:
+        exists.ravel()[slave] = exists.ravel()[weight.indices] = True
     return exists
 
 
-def _exponents(
-    parameters: Sequence[Parameter], name: str, power: int, linear: Sequence[str]
-) -> tuple[int, ...]:
-    """Return those of what a name has with a power of thickness; `linear` ones are factors."""
-    powers = {"thickness": power, **dict.fromkeys(linear, 1)}
+def _exponents(parameters: Sequence[Parameter], name: str, power: int, of: str) -> tuple[int, ...]:
+    """Return those of what a name has `of` a kind, with a power of thickness."""
+    powers = {"thickness": power, **dict.fromkeys(LINEAR[of], 1)}
     return tuple(powers.get(p.quantity, 0) * (name in p.of) for p in parameters)
 
 
@@ -147,13 +146,11 @@ def members_of(
     out = []
     for block in blocks_of(check_points(structure.nodes), structure, []):
         rows, count = T[block.dofs().ravel()], len(block.cells)
-        for of, exponents, parts, linear in (
-            ("stiffness", stiffness, block.stiffness, OF_STIFFNESS),
-            ("mass", mass, block.mass, OF_MASS),
-        ):
-            order = {tuple(e): j for j, e in enumerate(exponents.astype(int).tolist())}
-            own = {x: order[_exponents(structure.parameters, block.name, x, linear)] for x in parts}
-            shares = [(np.full(count, own[x]), A) for x, A in parts.items()]
+        for of, exponents in (("stiffness", stiffness), ("mass", mass)):
+            order, shares = exponents.astype(int).tolist(), []
+            for power, A in getattr(block, of).items():
+                own = _exponents(structure.parameters, block.name, power, of)
+                shares.append((np.full(count, order.index([*own])), A))
             if shares:
                 out.append(Members(of, block.name, block.cells, rows, shares))
     return out
@@ -166,12 +163,12 @@ class _Terms:
         self.T, self.parameters = T, parameters
         self.terms: dict[tuple[int, ...], sparse.csr_array] = {}
 
-    def add(self, block: Block, name: str, parts: ByPower, linear: Sequence[str]) -> None:
-        """Add parts of a block by the parameters of a name; `linear` ones are plain factors."""
+    def add(self, block: Block, name: str, parts: ByPower, of: str) -> None:
+        """Add parts of a block, by the parameters of what a name has `of` a kind."""
         # Summed element by element, in the same order on either side of the diagonal.
         moved = self.T[block.dofs().ravel()]
         for power, matrices in parts.items():
-            exponents, places = _exponents(self.parameters, name, power, linear), len(matrices)
+            exponents, places = _exponents(self.parameters, name, power, of), len(matrices)
             each = sparse.bsr_array((matrices, np.arange(places), np.arange(places + 1))).tocsr()
             term = moved.T @ (each @ moved)
             known = self.terms.get(exponents)
@@ -247,7 +244,7 @@ def _forces(load: Load, blocks: Sequence[Block], exists: Bools) -> Floats:
         expected = f"the name of what has strains: {', '.join(sorted(known)) or 'none has'}"
         raise wrong("strains", expected, repr(min(unknown)))
     for block in blocks:
-        pull = np.tile(np.append(a, np.zeros(3))[list(block.directions)], block.cells.shape[1])
+        pull = np.tile(np.append(a, np.zeros(3))[: block.d], block.cells.shape[1])
         parts = [M @ pull for M in block.mass.values()]
         if block.internal is not None and (strain := load.strains.get(block.name, 0.0)):
             parts.append(block.internal().free_forces(strain))

@@ -17,9 +17,6 @@ from modefront.fem.elements.solid import SOLIDS, solid, solid_stresses
 from modefront.fem.section import Material
 from modefront.rounding import COMPUTED, TINY, WRITTEN
 
-TRANSLATIONS = (0, 1, 2)
-SIX = (0, 1, 2, 3, 4, 5)  # directions of nodes of solids, and of beams and shells
-
 
 @dataclass(frozen=True)
 class Block:
@@ -27,7 +24,7 @@ class Block:
 
     name: str  # of the group, spring or mass
     cells: Ints  # nodes (elements, k)
-    directions: tuple[int, ...]  # the d DOFs of each node that the matrices have, ascending
+    d: int  # DOFs of each node that the matrices have: 3 translations, or all 6
     stiffness: common.ByPower  # stiffness, mass: matrices of size k d
     mass: common.ByPower
     rigid: bool = False  # whether an element that nothing deforms is one rigid body with its nodes
@@ -36,7 +33,7 @@ class Block:
 
     def dofs(self) -> Ints:
         """Return 6 node + direction of each row of the matrices (elements, k d)."""
-        dofs = 6 * self.cells[:, :, None] + np.array(self.directions)
+        dofs = 6 * self.cells[:, :, None] + np.arange(self.d)
         return np.asarray(dofs.reshape(len(dofs), -1))
 
 
@@ -59,7 +56,7 @@ def blocks_of(X: Floats, structure: members.Structure, faults: list[Fault]) -> l
             given = m, group.material, t, group.offset, group.name in varied
             internal = partial(shell.shell_stresses, x, r, m, common.ply(group.material), t)
             made = shell.shell(x, d, narrow, *given)
-            blocks.append(Block(group.name, cells, SIX, *made, rigid=True, internal=internal))
+            blocks.append(Block(group.name, cells, 6, *made, rigid=True, internal=internal))
     for member in (*structure.groups, *structure.springs, *structure.masses):
         kind, make = MADE.get(type(member), ("", None))
         with noted(faults, f"{kind} {member.name!r}"):
@@ -67,46 +64,42 @@ def blocks_of(X: Floats, structure: members.Structure, faults: list[Fault]) -> l
     return blocks
 
 
-def _beams(X: Floats, group: members.Beams) -> Block:
-    r = np.asarray(group.offsets, dtype=float)
-    cells, axis = _lines(X, group, r)
-    section = group.section
-    if group.orientation is None:
-        if section.I_y != section.I_z or section.kappa_y != section.kappa_z:
-            expected = "a vector in the plane of the beam's axis and its local y"
-            found = "nothing, and the section is not the same in y and z"
-            raise wrong("orientation", expected, found)
-        orientation = np.where(np.abs(axis[:, 2:]) > 0.9, np.eye(3)[0], np.eye(3)[2])
-    else:
-        v = check.unit_vector(group.orientation)[:3]
-        orientation = np.broadcast_to(v, axis.shape)
-        parallel = np.flatnonzero(np.linalg.norm(np.cross(axis, v), axis=1) < WRITTEN)
-        if len(parallel):
-            nodes = ", ".join(map(str, cells[parallel[0]].tolist()))
-            expected = f"a vector not parallel to the axis of element {parallel[0]} (nodes {nodes})"
-            raise wrong("orientation", expected, tuple(group.orientation))
-    made, axial = beam(X[cells], group.material, section, orientation, r, group.released)
-    given = {0: group.force * axial.unit} if group.force else {}
-    return Block(group.name, cells, SIX, *made, not group.released, given, lambda: axial)
-
-
-def _trusses(X: Floats, group: members.Trusses) -> Block:
-    cells, _ = _lines(X, group, np.zeros((2, 3)))
-    made, axial = truss(X[cells], group.material, group.area)
-    given = {0: group.force * axial.unit} if group.force else {}
-    return Block(group.name, cells, TRANSLATIONS, *made, False, given, lambda: axial)
-
-
-def _lines(X: Floats, group: members.Beams | members.Trusses, r: Floats) -> tuple[Ints, Floats]:
-    """Return cells (elements, 2) and the unit vectors along them, with offsets r of the ends."""
+def _lines(X: Floats, group: members.Beams | members.Trusses) -> Block:
     if not isinstance(group.material, Material):
         raise wrong("material", "an isotropic one", repr(group.material))
     cells = check.cell_array(group.cells, (2,), len(X))
+    r = np.asarray(getattr(group, "offsets", np.zeros((2, 3))), dtype=float)
     ends = X[cells] + r
     axis = ends[:, 1] - ends[:, 0]
-    length = np.linalg.norm(axis, axis=1)
-    check.check_sizes(length / np.ptp(X, axis=0).max(initial=TINY), cells, "length")
-    return cells, axis / length[:, None]
+    L = np.linalg.norm(axis, axis=1)
+    check.check_sizes(L / np.ptp(X, axis=0).max(initial=TINY), cells, "length")
+    axis = axis / L[:, None]
+    if isinstance(group, members.Trusses):
+        d, rigid, (made, axial) = 3, False, truss(axis, L, group.material, group.area)
+    else:
+        d, rigid, R = 6, not group.released, common.frame(axis, _orientation(group, cells, axis))
+        made, axial = beam(R, L, r, group.material, group.section, group.released)
+    given = {0: group.force * axial.unit} if group.force else {}
+    return Block(group.name, cells, d, *made, rigid, given, lambda: axial)
+
+
+def _orientation(group: members.Beams, cells: Ints, axis: Floats) -> Floats:
+    """Return vectors (elements, 3), or one for all, in the planes of axes and local y of beams."""
+    section = group.section
+    if group.orientation is None:
+        y, z = (section.I_y, section.kappa_y), (section.I_z, section.kappa_z)
+        if y != z or any(section.shear_centre):
+            expected = "a vector in the plane of the beam's axis and its local y"
+            found = "nothing, and the section is not the same in y and z"
+            raise wrong("orientation", expected, found)
+        return np.where(np.abs(axis[:, 2:]) > 0.9, np.eye(3)[0], np.eye(3)[2])
+    v = check.unit_vector(group.orientation)[:3]
+    parallel = np.flatnonzero(np.linalg.norm(np.cross(axis, v), axis=1) < WRITTEN)
+    if len(parallel):
+        nodes = ", ".join(map(str, cells[parallel[0]].tolist()))
+        expected = f"a vector not parallel to the axis of element {parallel[0]} (nodes {nodes})"
+        raise wrong("orientation", expected, tuple(group.orientation))
+    return v
 
 
 def _grain(x: Floats, group: members.Shells) -> Floats:
@@ -133,7 +126,7 @@ def _solids(X: Floats, group: members.Solids) -> Block:
     check.check_sizes(check.solid_sizes(X[cells]), cells, "volume")
     C = common.elasticity(group.material, check.axes_of(group.axes))
     made, internal = solid(X[cells], group.material.rho, C), partial(solid_stresses, X[cells], C)
-    return Block(group.name, cells, TRANSLATIONS, *made, rigid=True, internal=internal)
+    return Block(group.name, cells, 3, *made, rigid=True, internal=internal)
 
 
 def _springs(X: Floats, member: members.Spring) -> Block:
@@ -162,7 +155,7 @@ def _springs(X: Floats, member: members.Spring) -> Block:
         axis = _spring_axis(X, member, nodes, gap)
         rows = np.concatenate([axis, -axis][: nodes.shape[1]], 1)[:, None]
     K = common.symmetric(np.swapaxes(rows, 1, 2) @ (k[:, None] * rows))
-    return Block(member.name, nodes, SIX, {0: K}, {})
+    return Block(member.name, nodes, 6, {0: K}, {})
 
 
 def _spring_axis(X: Floats, member: members.Spring, nodes: Ints, gap: Floats) -> Floats:
@@ -193,8 +186,7 @@ def _masses(X: Floats, member: members.Mass) -> Block:
     """
     nodes = check.node_list(member.nodes, len(X))[:, None]
     inertia, c = np.asarray(member.inertia, dtype=float), np.asarray(member.offset, dtype=float)
-    m = np.asarray(member.mass, dtype=float)
-    m = np.repeat(m, 3) if m.shape == () else m
+    m = np.broadcast_to(np.asarray(member.mass, dtype=float), 3)
     inertia = np.diag(inertia) if inertia.shape == (3,) else inertia
     even = np.allclose(inertia, inertia.T, rtol=COMPUTED, atol=0)
     least = np.linalg.eigvalsh(inertia)[0] if even else -np.inf
@@ -203,12 +195,12 @@ def _masses(X: Floats, member: members.Mass) -> Block:
     centre = np.concatenate([np.eye(3), -common.cross_matrix(c)], 1)
     M = centre.T @ (m[:, None] * centre)
     M[3:, 3:] += inertia
-    return Block(member.name, nodes, SIX, {}, {0: np.tile(common.symmetric(M), (len(nodes), 1, 1))})
+    return Block(member.name, nodes, 6, {}, {0: np.tile(common.symmetric(M), (len(nodes), 1, 1))})
 
 
 MADE: Mapping[type, tuple[str, Callable[[Floats, Any], Block]]] = {
-    members.Beams: ("group", _beams),
-    members.Trusses: ("group", _trusses),
+    members.Beams: ("group", _lines),
+    members.Trusses: ("group", _lines),
     members.Solids: ("group", _solids),
     members.Spring: ("spring", _springs),
     members.Mass: ("mass", _masses),

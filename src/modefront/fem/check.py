@@ -12,6 +12,7 @@ import numpy.typing as npt
 from modefront._typing import Floats, Ints
 from modefront.errors import Fault, refuse, suggestion, wrong
 from modefront.fem import structure as members
+from modefront.fem.elements.common import frame
 from modefront.fem.elements.shapes import jacobian
 from modefront.fem.elements.shell import FOLD, corner_normals
 from modefront.fem.elements.solid import SOLIDS
@@ -73,11 +74,7 @@ def unit_vector(direction: Direction) -> Floats:
 
 def axes_of(axes: Axes | None) -> Floats:
     """Local axes (3, 3), x, y and z in rows; those of the model without any."""
-    if axes is None:
-        return np.eye(3)
-    given = np.asarray(axes, dtype=float)
-    x, z = given[0], np.cross(*given)
-    return np.stack([v / np.linalg.norm(v) for v in (x, np.cross(z, x), z)])
+    return np.eye(3) if axes is None else frame(*np.asarray(axes, dtype=float))
 
 
 def check_sizes(relative: Floats, cells: Ints, what: str) -> None:
@@ -95,8 +92,7 @@ def shell_sizes(X: Floats) -> Floats:
     extent = np.linalg.norm(np.ptp(X, axis=1), axis=1)[:, None]
     corners = corner_normals(X / np.where(extent > 0, extent, 1)[..., None])
     normal = corners.sum(1, keepdims=True)
-    length = np.linalg.norm(normal, axis=2, keepdims=True)
-    normal = np.divide(normal, length, out=np.zeros_like(normal), where=length > FLAT)
+    normal = normal / np.linalg.norm(normal, axis=2, keepdims=True).clip(FLAT)
     return np.asarray((corners * normal).sum(2).min(1))
 
 
@@ -105,8 +101,7 @@ def solid_sizes(X: Floats) -> Floats:
     extent = np.linalg.norm(np.ptp(X, axis=1), axis=1)
     extent = np.where(extent > 0, extent, 1)
     kind = SOLIDS[X.shape[1]]
-    corners = kind.cell.nodes[: 1 + max(map(max, kind.faces))]
-    points = np.vstack([corners, kind.stiffness[0]])
+    points = np.vstack([kind.cell.nodes[: kind.corners], kind.stiffness[0]])
     return np.asarray(np.linalg.det(jacobian(X, kind.cell.shape(points)[1])).min(1) / extent**3)
 
 

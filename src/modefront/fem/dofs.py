@@ -12,10 +12,11 @@ K_q = T^T K T is exact.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 from scipy import sparse
-from scipy.linalg import block_diag
+from scipy.linalg import block_diag, qr
 
 from modefront._typing import Bools, Floats, Ints
 from modefront.errors import Fault, noted, wrong
@@ -40,12 +41,8 @@ class Dofs:
     T: sparse.csr_array
 
 
-@dataclass(frozen=True)
-class Followers:
-    """Degrees of freedom that follow others: u[slave] = weight u."""
-
-    slave: Ints  # (rows,) 6 node + direction
-    weight: sparse.csr_array  # CSR (rows, 6 nodes)
+Followers: TypeAlias = tuple[Ints, sparse.csr_array]
+"""Degrees of freedom that follow others, 6 node + direction, and CSR weights: u[slave] = W u."""
 
 
 def following_rows(X: Floats, structure: Structure, faults: list[Fault]) -> list[Followers]:
@@ -96,11 +93,11 @@ def _coupling(X: Floats, coupling: Coupling) -> Followers:
 
 def _followers(X: Floats, slave: Ints, masters: Ints, weight: Floats, axes: list[int]) -> Followers:
     """Return rows of axes of slaves (slaves,) by factors (slaves, 6, k, 6) on their masters."""
-    count = len(masters)
-    columns = (6 * masters[:, :, None] + np.arange(6)).reshape(count, -1)
+    width = 6 * masters.shape[1]
+    columns = (6 * masters[:, :, None] + np.arange(6)).reshape(-1, width)
     columns, weight = np.repeat(columns, len(axes), axis=0), weight[:, axes]
-    rows = sparse_rows(weight.reshape(count * len(axes), -1), columns, 6 * len(X))
-    return Followers((6 * slave[:, None] + np.array(axes)).ravel(), rows)
+    rows = sparse_rows(weight.reshape(-1, width), columns, 6 * len(X))
+    return (6 * slave[:, None] + np.array(axes)).ravel(), rows
 
 
 def rigid_motion(arms: Floats) -> Floats:
@@ -114,7 +111,7 @@ def hold(
     """Hold what supports hold; return what follows where they are not along global axes.
 
     Rows C u = 0 of a node that are not along global axes are solved for as many of its DOFs, by
-    complete pivoting. What is held altogether is added to ``held`` (nodes, 6).
+    QR with pivoting. What is held altogether is added to ``held`` (nodes, 6).
     """
     skew: dict[int, list[Floats]] = {}
     for n, each in enumerate(supports):
@@ -130,29 +127,16 @@ def hold(
     out = []
     for node, several in skew.items():
         C = np.concatenate([np.eye(6)[held[node]], *several]) * exists[node]
-        for pivot, row in _solved(C):
-            if row.any():
-                weight = sparse_rows(row[None], 6 * node + np.arange(6)[None], 6 * len(X))
-                out.append(Followers(np.array([6 * node + pivot]), weight))
-            else:
-                held[node, pivot] = True
+        _, R, order = qr(C, pivoting=True)
+        rank = int((abs(R.diagonal()) > WRITTEN).sum())
+        weight = np.zeros((rank, 6))
+        weight[:, order[rank:]] = -np.linalg.solve(R[:rank, :rank], R[:rank, rank:])
+        weight[abs(weight) <= ACCUMULATED] = 0
+        follows, dofs = weight.any(axis=1), 6 * node + np.arange(6)
+        held[node, order[:rank][~follows]] = True
+        rows = sparse_rows(weight[follows], np.tile(dofs, (follows.sum(), 1)), 6 * len(X))
+        out.append((dofs[order[:rank][follows]], rows))
     return out
-
-
-def _solved(C: Floats) -> list[tuple[int, Floats]]:
-    """Return pivots j with rows of x_j = row x, from the rows of C x = 0."""
-    C, pivots = C.copy(), []
-    for n in range(min(C.shape)):
-        i, j = divmod(int(np.argmax(abs(C[n:]))), 6)
-        if abs(C[n + i, j]) <= WRITTEN:
-            break
-        C[[n, n + i]] = C[[n + i, n]]
-        C[n] /= C[n, j]
-        others = np.arange(len(C)) != n
-        C[others] -= np.outer(C[others, j], C[n])
-        pivots.append(j)
-    C[abs(C) <= ACCUMULATED] = 0
-    return [(j, np.eye(6)[j] - C[n]) for n, j in enumerate(pivots)]
 
 
 def number_dofs(exists: Bools, held: Bools, following: Sequence[Followers]) -> Dofs:
@@ -162,9 +146,9 @@ def number_dofs(exists: Bools, held: Bools, following: Sequence[Followers]) -> D
     ``held`` (nodes, 6). The rows ``following`` of links, couplings and supports may be chains.
     """
     nodes = len(exists)
-    none = Followers(np.zeros(0, np.int64), sparse.csr_array((0, 6 * nodes)))
-    slave = np.concatenate([each.slave for each in (none, *following)])
-    weight = sparse.csr_array(sparse.vstack([each.weight for each in (none, *following)]))
+    none = np.zeros(0, np.int64), sparse.csr_array((0, 6 * nodes))
+    slaves, weights = zip(none, *following, strict=True)
+    slave, weight = np.concatenate(slaves), sparse.csr_array(sparse.vstack(weights))
 
     def refuse(slaves: Ints, expected: str, found: str) -> None:
         if len(slaves):

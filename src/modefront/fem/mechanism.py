@@ -68,24 +68,21 @@ def _incidence(nodes: int, elements: Sequence[Block], exists: Bools) -> Ints:
     to the body of each.
     """
     none, size = np.zeros((0, 2), np.int64), nodes
-    pairs, solid_pairs, faces = [none], [none], [np.zeros((0, 5), np.int64)]
+    pairs, solid_pairs, corners = [none], [none], [none]
     for block in elements:
         count, k = block.cells.shape
         vertex, size = size + np.arange(count), size + count
-        to_nodes = np.stack([block.cells.ravel(), np.repeat(vertex, k)], 1)
-        if len(block.directions) == 6:
-            pairs.append(to_nodes)
-            continue
-        solid_pairs.append(to_nodes)
-        for corners in SOLIDS[k].faces:
-            missing = np.full((count, 4 - len(corners)), -1)
-            key = np.sort(block.cells[:, corners], -1)
-            faces.append(np.column_stack([key, missing, vertex]))
-    *sides, element = np.concatenate(faces).T
-    _, face = np.unique(sides, axis=1, return_inverse=True)
-    pairs.append(np.stack([size + face, element], 1))
-    size += int(face.max(initial=-1)) + 1
-    edges = np.concatenate(pairs)
+        to_nodes = np.stack([block.cells, np.repeat(vertex[:, None], k, axis=1)], 2)
+        if block.d == 6:
+            pairs.append(to_nodes.reshape(-1, 2))
+        else:
+            solid_pairs.append(to_nodes.reshape(-1, 2))
+            corners.append(to_nodes[:, : SOLIDS[k].corners].reshape(-1, 2))
+    at = np.concatenate(corners)
+    touched = sparse.coo_array((np.ones(len(at)), at.T[::-1]), shape=(size, nodes)).tocsr()
+    common = (touched @ touched.T).tocoo()
+    faces = common.data >= 3  # an edge has two corners
+    edges = np.concatenate([*pairs, np.stack([common.row, common.col], 1)[faces]])
     graph = sparse.coo_array((np.ones(len(edges)), edges.T), shape=(size, size))
     _, label = connected_components(graph, directed=False)
 
@@ -109,7 +106,7 @@ def constraint_rows(
         (other - H[(6 * node[:, None] + np.arange(6)).ravel()])[moves],
         H[np.flatnonzero(held & (bodies.home >= 0)[:, None])],
         *(_resisted(block, 6 * len(X)) @ H for block in soft),
-        *(H[each.slave] - each.weight @ H for each in following),
+        *(H[slave] - weight @ H for slave, weight in following),
     ]
     C = sparse.csr_array(sparse.vstack(rows))
     norm = np.sqrt(np.asarray(C.power(2).sum(1)).ravel())

@@ -4,9 +4,8 @@ Sections of beams are constants about principal axes y and z through the centroi
 free: where it is held, open thin walls twist less than beams. Units are consistent ones.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -23,8 +22,21 @@ Factor = Annotated[
 POSITIVE = opt.array(opt.ABOVE_ZERO, 3, 3)
 
 
+class Elastic(opt.Checked):
+    """What materials have in common."""
+
+    def compliance(self) -> Floats:
+        """Return S (6, 6), strains of stresses 11, 22, 33, 23, 13, 12 (engineering shear)."""
+        own: Any = self
+        E, nu, G = (np.broadcast_to(x, 3) for x in (own.E, own.nu, own.G))
+        S = np.diag(1 / np.concatenate([E, G[::-1]]))
+        for (i, j), each in zip(((0, 1), (0, 2), (1, 2)), nu, strict=True):
+            S[i, j] = S[j, i] = -each / E[i]
+        return S
+
+
 @dataclass(frozen=True)
-class Material(opt.Checked):
+class Material(Elastic):
     """Isotropic material, in consistent units (SI: Pa, -, kg/m^3).
 
     Raises InputError if a value is outside its range.
@@ -45,13 +57,9 @@ class Material(opt.Checked):
         """Shear modulus E / (2 (1 + nu))."""
         return self.E / (2 * (1 + self.nu))
 
-    def compliance(self) -> Floats:
-        """Return S (6, 6), strains of stresses 11, 22, 33, 23, 13, 12 (engineering shear)."""
-        return _compliance((self.E,) * 3, (self.nu,) * 3, (self.G,) * 3)
-
 
 @dataclass(frozen=True)
-class Orthotropic:
+class Orthotropic(Elastic):
     """Orthotropic material, such as wood or a laminate, by its axes 1, 2 and 3.
 
     Raises InputError if a value is outside its range, or the elasticity matrix is not positive
@@ -73,20 +81,9 @@ class Orthotropic:
     rho: Annotated[float, DENSITY]
 
     def __post_init__(self) -> None:
-        opt.check_fields(self)
+        super().__post_init__()
         if not np.linalg.eigvalsh(self.compliance()[:3, :3] * max(self.E))[0] > 0:
             raise wrong("nu", "ratios that leave the elasticity positive definite", self.nu)
-
-    def compliance(self) -> Floats:
-        """Return S (6, 6), strains of stresses 11, 22, 33, 23, 13, 12 (engineering shear)."""
-        return _compliance(self.E, self.nu, self.G)
-
-
-def _compliance(E: Sequence[float], nu: Sequence[float], G: Sequence[float]) -> Floats:
-    S = np.diag([*(1 / np.array(E)), 1 / G[2], 1 / G[1], 1 / G[0]])
-    for (i, j), each in zip(((0, 1), (0, 2), (1, 2)), nu, strict=True):
-        S[i, j] = S[j, i] = -each / E[i]
-    return S
 
 
 @dataclass(frozen=True)

@@ -73,10 +73,12 @@ class CheckedFunction:
         if not derivatives:
             return (K, ()), (M, ())
         if len(returned) == 4:
-            dK = self._listed(returned[2], f"{place}: dK", K.shape[0])
-            return (K, dK), (M, self._listed(returned[3], f"{place}: dM", K.shape[0]))
-        steps = [self._complex_step(theta, i, K.shape[0]) for i in range(theta.size)]
-        return (K, tuple(dK for dK, _ in steps)), (M, tuple(dM for _, dM in steps))
+            given = zip(returned[2:], ("dK", "dM"), strict=True)
+            dK, dM = (self._listed(x, f"{place}: {what}", K.shape[0]) for x, what in given)
+        else:
+            steps = (self._complex_step(theta, i, K.shape[0]) for i in range(theta.size))
+            dK, dM = zip(*steps, strict=True)
+        return (K, dK), (M, dM)
 
     def check_derivatives(
         self, theta: Floats, lower: Floats, upper: Floats, known: tuple[Tangent, Tangent]
@@ -248,8 +250,7 @@ def function_model(
         raise wrong("parameters", "at least one", "none")
     refuse(each_once("parameters", [each.name for each in parameters]))
     function = CheckedFunction(matrices, tuple(each.name for each in parameters))
-    theta = np.array([each.nominal for each in parameters])
-    lower, upper = (np.array(ends) for ends in zip(*(x.bounds for x in parameters), strict=True))
+    theta, lower, upper = np.array([(each.nominal, *each.bounds) for each in parameters]).T.copy()
     K, M = function.at(theta, None)
     function.check_derivatives(theta, lower, upper, (K, M))
     size = int(K[0].shape[0])

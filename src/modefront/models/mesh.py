@@ -6,6 +6,7 @@ from functools import partial
 
 import numpy as np
 from scipy.sparse import csr_array
+from scipy.sparse.linalg import spsolve
 
 from modefront import fem
 from modefront.errors import wrong
@@ -51,39 +52,38 @@ def mesh_model(
     """
     whole = replace(structure, sensors=(*structure.sensors, *outputs))
     built = fem.assemble(whole, floating=floating)
-    sensors, others = np.split(np.arange(len(built.sensors)), [len(structure.sensors)])
     if missing := [name for name in built.parameters if name not in parameters]:
         expected = f"the structure's {', '.join(built.parameters)}"
         raise wrong("parameters", expected, f"no {missing[0]}")
-    own = [[float(x == name) for x in parameters] for name in built.parameters]
-    of = np.array(own).reshape(len(own), len(parameters))
-    pair = built.stiffness, built.mass
-    exponents = [A.coefficients.exponents for A in pair]
-    K, M = (
-        replace(A, coefficients=Monomials(e @ of)) for A, e in zip(pair, exponents, strict=True)
-    )
+    of = np.eye(len(parameters))[[list(parameters).index(name) for name in built.parameters]]
+    exponents = [A.coefficients.exponents for A in (built.stiffness, built.mass)]
+    K = replace(built.stiffness, coefficients=Monomials(exponents[0] @ of))
+    M = replace(built.mass, coefficients=Monomials(exponents[1] @ of))
     direction, X = built.dofs.free[:, 1], check_points(structure.nodes)
     types = {2: "line", 3: "triangle", 4: "quad", 8: "hexahedron", 10: "tetra10"}
     types |= {15: "wedge15", 20: "hexahedron20"}
-    cells = [np.atleast_2d(np.asarray(group.cells)) for group in structure.groups]
-    named = zip(structure.groups, cells, strict=True)
-    known = tuple(Cells(group.name, types[each.shape[1]], each) for group, each in named)
+    known = tuple(
+        Cells(group.name, types[np.shape(group.cells)[1]], np.asarray(group.cells))
+        for group in structure.groups
+    )
+    moving = [(direction == d).astype(float) for d in range(3)]
+    if any(each.axes is not None for each in structure.supports):
+        # Nodes on supports in axes of their own follow the base as far as they are free to.
+        T = built.dofs.T
+        moving = [spsolve((T.T @ T).tocsc(), T[d::6].sum(axis=0)) for d in range(3)]
     translations = 6 * np.arange(len(X))[:, None] + np.arange(3)
     motion = csr_array(built.dofs.T[translations.ravel()])
     (at, along), count = built.places, len(structure.sensors)
+    rows = built.selection[count:].toarray()
     return MatrixModel(
         tuple(parameters),
-        tuple(built.sensors[i] for i in sensors),
-        built.selection[sensors],
+        built.sensors[:count],
+        built.selection[:count],
         K,
         M,
-        outputs={built.sensors[i]: built.selection[[i]].toarray()[0] for i in others},
+        outputs=dict(zip(built.sensors[count:], rows, strict=True)),
         # Slaves of rigid links follow their masters, which is the same translation.
-        base={
-            name: (direction == d).astype(float)
-            for d, name in enumerate(fem.DIRECTIONS[:3])
-            if (direction == d).any()
-        },
+        base={name: r for name, r in zip(fem.DIRECTIONS, moving, strict=False) if r.any()},
         limits=tuple(limits_of(structure, X)),
         geometry=Geometry(X, known, motion, at[:count], along[:count, :3]),
         members=partial(fem.members_of, structure, built.dofs.T, *exponents),

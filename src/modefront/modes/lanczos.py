@@ -56,6 +56,11 @@ def greatest(
     capacity = min(n, max(3 * needed, 40) + 4 * b)
     V, AV, H = np.empty((n, capacity)), np.empty((n, capacity)), np.zeros((capacity, capacity))
     d, complete = 0, False
+
+    def outside(W: Floats) -> Floats:
+        """Return the part of W that is orthogonal to the basis in A."""
+        return W - combine(V[:, :d], gram(AV[:, :d], W))
+
     Q, AQ, R = _orthonormal(start, A, 0.0)
     for step in range(1, steps + 1):
         if d + Q.shape[1] > capacity:
@@ -66,11 +71,11 @@ def greatest(
         MQ = times(M, Q)
         H[:d, new] = gram(V[:, :d], MQ)
         H[new, :d] = H[:d, new].T
-        W = _outside(solve(MQ) - combine(V[:, :d], H[:d, new]), V[:, :d], AV[:, :d])
+        W = outside(solve(MQ) - combine(V[:, :d], H[:d, new]))
         scale = np.abs(np.diagonal(H[:d, :d])).max()
         Q, AQ, R = _orthonormal(W, A, FINITE * scale, n - d)
         if R.size and np.abs(R).max() < 1e-4 * scale:
-            Q, AQ, again = _orthonormal(_outside(Q, V[:, :d], AV[:, :d]), A, 0.0)
+            Q, AQ, again = _orthonormal(outside(Q), A, 0.0)
             R = again @ R
         if d < needed and Q.size and step < steps:
             continue
@@ -86,9 +91,9 @@ def greatest(
             # All modes that the block contains are found; a random one may contain others.
             W = solve(M @ np.random.default_rng(step).standard_normal((n, b)))
             size = np.sqrt(np.einsum("nc,nc->c", W, A @ W).max())
-            W = _outside(_outside(W, V[:, :d], AV[:, :d]), V[:, :d], AV[:, :d])
+            W = outside(outside(W))
             Q, _, _ = _orthonormal(W, A, NEW * size, n - d)
-            Q, AQ, _ = _orthonormal(_outside(Q, V[:, :d], AV[:, :d]), A, 0.0)
+            Q, AQ, _ = _orthonormal(outside(Q), A, 0.0)
             R = np.zeros((Q.shape[1], new.stop - new.start))
             complete = not Q.size
             if complete:
@@ -96,11 +101,6 @@ def greatest(
     keep = min(d, max(leading, needed) + 1)
     complete = complete or d == n
     return Ritz(mu[:keep], combine(V[:, :d], Y[:, :keep]), min(leading, keep), complete)
-
-
-def _outside(W: Floats, V: Floats, AV: Floats) -> Floats:
-    """Return the part of W that is orthogonal to V in A."""
-    return W - combine(V, gram(AV, W))
 
 
 def _orthonormal(

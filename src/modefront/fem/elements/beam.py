@@ -29,7 +29,7 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.errors import wrong
-from modefront.fem.elements.common import Matrices, attachment, symmetric
+from modefront.fem.elements.common import Matrices, attachment, products, symmetric
 from modefront.fem.section import Material, Section
 from modefront.rounding import COMPUTED
 
@@ -53,15 +53,6 @@ class Axial:
         """Return K_G (elements, n, n) of displacements q (elements, n) and a free strain."""
         N = self.rigidity * ((self.rows * q).sum(1) / self.length - strain)
         return N[:, None, None] * self.unit
-
-
-def axes(X: Floats, orientation: Floats) -> Floats:
-    """Local axes R (elements, 3, 3); local y lies in the plane of axis and `orientation`."""
-    along = X[:, 1] - X[:, 0]
-    along = along / np.linalg.norm(along, axis=1, keepdims=True)
-    y = orientation - (along * orientation).sum(1, keepdims=True) * along
-    y = y / np.linalg.norm(y, axis=1, keepdims=True)
-    return np.stack([along, y, np.cross(along, y)], 1)
 
 
 def plane(Phi: Floats, L: Floats, s: Floats) -> tuple[Floats, Floats, Floats]:
@@ -97,13 +88,6 @@ def plane(Phi: Floats, L: Floats, s: Floats) -> tuple[Floats, Floats, Floats]:
     return f, df, g[0]
 
 
-def integral(rows: Floats, weight: Floats) -> Floats:
-    """Return the sum over points and rows of weight times B^T B, (elements, 12, 12)."""
-    B = rows.reshape(len(rows), -1, rows.shape[-1])
-    w = np.broadcast_to(weight, rows.shape[:-1]).reshape(len(rows), -1, 1)
-    return symmetric(np.swapaxes(B, 1, 2) @ (w * B))
-
-
 def release(K: Floats, directions: Sequence[int]) -> Floats:
     """Return G (elements, 12, 12), motions of all DOFs from those that are not released."""
     r = list(directions)
@@ -118,22 +102,19 @@ def release(K: Floats, directions: Sequence[int]) -> Floats:
 
 
 def beam(
-    X: Floats,
+    R: Floats,
+    L: Floats,
+    r: Floats,
     material: Material,
     section: Section,
-    orientation: Floats,
-    r: Floats,
     released: Sequence[int] = (),
 ) -> tuple[Matrices, Axial]:
-    """Matrices of straight beams X (elements, 2, 3), DOFs (u, r) node by node in global axes.
+    """Matrices of straight beams, DOFs (u, r) node by node in global axes.
 
-    Local y is the part of the orientation (elements, 3) across the axis; r (2, 3) are offsets of
-    the flexible part's ends from the nodes, global: along the axis a rigid end zone (without mass),
+    Axes R (elements, 3, 3) and lengths L (elements,) are those of the flexible part; r (2, 3) are
+    offsets of its ends from the nodes, global: along the axis a rigid end zone (without mass),
     across it an eccentricity. Of the ends' 12 local DOFs, those released are without force.
     """
-    ends = X + r
-    R = axes(ends, orientation)
-    L = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
     E, G, A = material.E, material.G, section.A
     polar = section.I_y + section.I_z
     points, weights = np.polynomial.legendre.leggauss(4)
@@ -161,11 +142,11 @@ def beam(
         for rows in (f, df):
             rows[:, :, direction] -= arm * rows[:, :, TWIST]
     EI_y, EI_z = E * section.I_y, E * section.I_z
-    K = integral(df, w * [E * A, 0, 0, G * section.J, EI_y, EI_z]) + integral(gamma, w * shear)
-    M = integral(f, material.rho * w * [A, A, A, polar, section.I_y, section.I_z])
+    K = products(df, w * [E * A, 0, 0, G * section.J, EI_y, EI_z]) + products(gamma, w * shear)
+    M = products(f, material.rho * w * [A, A, A, polar, section.I_y, section.I_z])
     bows = material.rho * w * L[:, None, None] ** 2 / 12
-    M += integral(df, bows * [A, 0, 0, polar, 0, 0]) + integral(gamma, bows * sheared)
-    K_G = integral(df, w * [0, 1, 1, polar / A, 0, 0])
+    M += products(df, bows * [A, 0, 0, polar, 0, 0]) + products(gamma, bows * sheared)
+    K_G = products(df, w * [0, 1, 1, polar / A, 0, 0])
     a = centre @ attachment(np.broadcast_to(r, (len(L), 2, 3)), R).reshape(-1, 12, 12)
     if released:
         a = release(K, released) @ a
@@ -174,14 +155,12 @@ def beam(
     return ({0: K}, {0: M}), Axial(elongation, L, E * A, K_G)
 
 
-def truss(X: Floats, material: Material, area: float) -> tuple[Matrices, Axial]:
-    """Matrices of straight bars X (elements, 2, 3), DOFs u node by node in global axes."""
-    along = X[:, 1] - X[:, 0]
-    L = np.linalg.norm(along, axis=1)[:, None]
-    row = np.concatenate([-along, along], 1) / L
+def truss(axis: Floats, length: Floats, material: Material, area: float) -> tuple[Matrices, Axial]:
+    """Matrices of straight bars along unit vectors (elements, 3), DOFs u node by node, global."""
+    L, row = length[:, None, None], np.concatenate([-axis, axis], 1)
+    along = row[:, :, None] * row[:, None, :]
     EA, mass = material.E * area, material.rho * area
-    K = (EA / L)[:, None] * row[:, :, None] * row[:, None, :]
-    M = (mass * L)[:, None] * np.kron(np.array([[2.0, 1], [1, 2]]) / 6, np.eye(3))
-    M += (mass * L / 12)[:, None] * row[:, :, None] * row[:, None, :]
-    across = np.kron(np.array([[1.0, -1], [-1, 1]]), np.eye(3)) - row[:, :, None] * row[:, None, :]
-    return ({0: symmetric(K)}, {0: M}), Axial(row, L[:, 0], EA, symmetric(across / L[:, None]))
+    M = mass * L * np.kron(np.array([[2.0, 1], [1, 2]]) / 6, np.eye(3)) + mass * L / 12 * along
+    across = np.kron(np.array([[1.0, -1], [-1, 1]]), np.eye(3)) - along
+    unit = symmetric(across / L)
+    return ({0: symmetric(EA / L * along)}, {0: M}), Axial(row, length, EA, unit)

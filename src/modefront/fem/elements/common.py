@@ -26,6 +26,13 @@ def symmetric(K: Floats) -> Floats:
     return np.asarray((K + np.swapaxes(K, -1, -2)) / 2)
 
 
+def products(B: Floats, D: Floats) -> Floats:
+    """Return the sum over points of B^T D B (elements, n, n), D matrices or their diagonals."""
+    rows = B.reshape(len(B), -1, B.shape[-1])
+    weighted = D @ B if D.ndim == B.ndim else D[..., None] * B
+    return symmetric(np.swapaxes(rows, 1, 2) @ weighted.reshape(rows.shape))
+
+
 @dataclass(frozen=True)
 class Ply:
     """Plane stress and transverse shear of a material along its axes 1 and 2."""
@@ -59,10 +66,14 @@ def ply(material: Material | Orthotropic) -> Ply:
 
 def cross_matrix(r: Floats) -> Floats:
     """[r]x of shape (..., 3, 3), with [r]x a = r x a."""
-    zero = np.zeros(r.shape[:-1])
-    x, y, z = r[..., 0], r[..., 1], r[..., 2]
-    rows = [[zero, -z, y], [z, zero, -x], [-y, x, zero]]
-    return np.stack([np.stack(row, -1) for row in rows], -2)
+    return np.asarray(np.cross(np.eye(3), r[..., None, :]))
+
+
+def frame(x: Floats, other: Floats) -> Floats:
+    """Axes (..., 3, 3) in rows: along x, in its plane with another vector, and across that."""
+    z = np.cross(x, other)
+    R = np.stack([x, np.cross(z, x), z], -2)
+    return np.asarray(R / np.linalg.norm(R, axis=-1, keepdims=True))
 
 
 def attachment(r: Floats, R: Floats | None = None) -> Floats:

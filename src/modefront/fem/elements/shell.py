@@ -4,7 +4,7 @@ Matrices are exact sums of monomials of the thickness t,
 
     K = t (K_membrane + K_shear) + t^3 K_bending,     M = t M_translation + t^3 M_rotary,
 
-and where t varies, K_shear and K_bending are quadratic in it (`modefront.fem.elements.plate`).
+and where t varies, K_shear and K_bending are quadratic in it (`modefront.fem.elements.triangle`).
 
 A quadrilateral is the mean of its two divisions into triangles, with weights in inverse proportion
 to the fourth powers of their diagonals: it may be warped, and where it is skew, it is soon that of
@@ -21,9 +21,8 @@ import numpy as np
 
 from modefront._typing import Floats, Ints
 from modefront.fem.elements import common
-from modefront.fem.elements.membrane import membrane
-from modefront.fem.elements.plate import Elements, Rows, mass, shear_and_bending
 from modefront.fem.elements.shapes import SQUARE_4, TRIANGLE_3, gauss_box
+from modefront.fem.elements.triangle import Elements, Rows, mass, membrane, shear_and_bending
 from modefront.fem.section import Material, Orthotropic
 
 FOLD = 20.0  # angle in degrees between elements from which on they meet in a fold
@@ -146,7 +145,7 @@ def shell(
         )
         parts.append((membrane(each, t, own), *shear_and_bending(each, t, own), *mass(each)))
     stretched, sheared, bent, moved, turned = (
-        products(*(np.concatenate(x, 1) for x in zip(*part, strict=True)))
+        common.products(*(np.concatenate(x, 1) for x in zip(*part, strict=True)))
         for part in zip(*parts, strict=True)
     )
     K_1, K_3 = t * sheared, t**3 * bent
@@ -163,19 +162,11 @@ def _by_order(K: Floats, n: int) -> tuple[Floats, Floats, Floats]:
     return K[:, :n, :n], K[:, :n, n:] + K[:, n:, :n], K[:, n:, n:]
 
 
-def products(B: Floats, D: Floats) -> Floats:
-    """Return the sum over points of B^T D B (elements, n, n)."""
-    rows = B.reshape(len(B), -1, B.shape[-1])
-    return common.symmetric(np.swapaxes(rows, 1, 2) @ (D @ B).reshape(rows.shape))
-
-
 def centre_axes(x: Floats) -> Floats:
     """Return axes (elements, 3, 3) at the centre of shells x (.., nodes, 3), the third across."""
     cell, (xi, w) = SURFACES[x.shape[1]]
     a = np.swapaxes(cell.shape((w @ xi / w.sum())[None])[1][0], 0, 1) @ x
-    normal = np.cross(a[:, 0], a[:, 1])
-    R = np.stack([a[:, 0], np.cross(normal, a[:, 0]), normal], 1)
-    return np.asarray(R / np.linalg.norm(R, axis=2, keepdims=True))
+    return common.frame(a[:, 0], a[:, 1])
 
 
 def shell_stresses(X: Floats, r: Floats, m: Floats, ply: common.Ply, t: float) -> common.Stresses:

@@ -18,29 +18,23 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.fem.elements import common, shapes
-from modefront.fem.structure import FACES
 
 
 @dataclass(frozen=True)
 class Solid:
-    """Kind of solid: cell, faces (corners), and quadratures that are exact for straight edges."""
+    """Kind of solid: cell, its corners, and quadratures that are exact for straight edges."""
 
     cell: shapes.Cell
-    faces: tuple[tuple[int, ...], ...]
+    corners: int  # the first of its nodes
     stiffness: shapes.Rule
     mass: shapes.Rule
 
 
 SOLIDS = {  # by their number of nodes
-    8: Solid(shapes.CUBE_8, FACES["hexahedron"], shapes.gauss_box(2, 3), shapes.gauss_box(3, 3)),
-    10: Solid(
-        shapes.TETRAHEDRON_10,
-        FACES["tetra"],
-        shapes.gauss_tetrahedron_4(),
-        shapes.gauss_simplex(3, 3),
-    ),
-    15: Solid(shapes.WEDGE_15, FACES["wedge"], shapes.gauss_wedge(3), shapes.gauss_wedge(3)),
-    20: Solid(shapes.CUBE_20, FACES["hexahedron"], shapes.gauss_box(3, 3), shapes.gauss_box(3, 3)),
+    8: Solid(shapes.CUBE_8, 8, shapes.gauss_box(2, 3), shapes.gauss_box(3, 3)),
+    10: Solid(shapes.TETRAHEDRON_10, 4, shapes.gauss_tetrahedron_4(), shapes.gauss_simplex(3, 3)),
+    15: Solid(shapes.WEDGE_15, 6, shapes.gauss_wedge(3), shapes.gauss_wedge(3)),
+    20: Solid(shapes.CUBE_20, 8, shapes.gauss_box(3, 3), shapes.gauss_box(3, 3)),
 }
 
 

@@ -1,6 +1,7 @@
 """A model that solves a sparse one a few times, and a small one in its place after that."""
 
 import time
+from collections.abc import Hashable
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from itertools import combinations, islice
@@ -53,7 +54,7 @@ class SnapshotRequest:
         return list(np.atleast_2d(self.theta))
 
     @property
-    def key(self) -> tuple[bytes, int, float, bool]:
+    def key(self) -> Hashable:
         """What tells the snapshot from others."""
         return self.theta.tobytes(), self.modes, self.enough, self.derivatives
 
@@ -85,7 +86,7 @@ class ReducedModel(Shown):
     snapshots: tuple[SnapshotRequest, ...] = ()
     # relative ones of eigenvalues, and those of shapes, at models by the bytes of theta
     errors: dict[bytes, tuple[Floats, Floats]] = field(default_factory=dict)
-    _taken: tuple[tuple[SnapshotRequest, Costs, float], ...] = ()
+    _taken: tuple[tuple[Hashable, Costs, float], ...] = ()  # of the basis
     _basis: bases.Basis | None = None
     _small: _Projected | None = None
 
@@ -101,7 +102,7 @@ class ReducedModel(Shown):
         return {**vars(self), **lost}
 
     @property
-    def version(self) -> tuple[tuple[bytes, int, float, bool], ...]:
+    def version(self) -> tuple[Hashable, ...]:
         """Snapshots in use."""
         return tuple(what.key for what in self.snapshots)
 
@@ -225,13 +226,14 @@ class ReducedModel(Shown):
     @property
     def _is_at_hand(self) -> bool:
         """Whether nothing has to be solved in full for the snapshots in use."""
-        if self._small is not None and self._small[0] is self.snapshots:
-            return True
-        return len(self._taken) == len(self.snapshots) > 0 and self._begins
+        small = self._small is not None and self._small[0] is self.snapshots
+        return small or 0 < len(self.snapshots) == self._known
 
     @property
-    def _begins(self) -> bool:
-        return self.version[: len(self._taken)] == tuple(what.key for what, *_ in self._taken)
+    def _known(self) -> int:
+        """How many of the snapshots in use the basis has; 0 where it has others."""
+        taken = tuple(key for key, *_ in self._taken)
+        return len(taken) if self.version[: len(taken)] == taken else 0
 
     def _projected(self) -> _Projected:
         if self._small is None or self._small[0] is not self.snapshots:
@@ -242,14 +244,13 @@ class ReducedModel(Shown):
 
     def _compute(self) -> None:
         """Make the basis that of the requested snapshots; only those not in it are computed."""
-        if not self._begins:
+        if not self._known:
             self._taken, self._basis = (), None
         with uncounted():  # `take` counts a snapshot, once
-            for what in self.snapshots[len(self._taken) :]:
+            for what in self.snapshots[self._known :]:
                 with counted() as costs:
-                    basis, error = self._added(what)
-                self._basis = basis
-                self._taken = (*self._taken, (what, costs, error))
+                    self._basis, error = self._added(what)
+                self._taken = (*self._taken, (what.key, costs, error))
 
     def _added(self, what: SnapshotRequest) -> tuple[bases.Basis, float]:
         """Return the basis with a snapshot, and the error that it found.
@@ -257,39 +258,31 @@ class ReducedModel(Shown):
         Models near enough are corrected with the factor at hand, others solved in full. Those that
         have no modes are left out; raises ModelError where all of them have none.
         """
-        basis, models, n = self._basis, what.models, what.modes
+        basis, models, n, error, failed = self._basis, what.models, what.modes, 0.0, 0
         if basis is None:
-            basis = self._solved(None, models.pop(0), what)
-            return self._added_to(basis, models, what)[0], np.inf
-        if n == 0:
+            basis, error = self._solved(None, models.pop(0), what), np.inf
+        elif n == 0:
             return self._excluding(basis, models), np.inf
-        if what.enough:
-            if known := [theta for theta in models if basis.ritz_values(theta, n).size >= n]:
-                lengths = bases.lacking_lengths(basis, known, n)
-                ranked = np.argsort(-lengths, kind="stable")
-                models = [known[k] for k in ranked if lengths[k] >= what.enough]
-                if not models:
-                    return basis, float(lengths.max())
-            models = models[:WORST]
-        return self._added_to(basis, models, what)
-
-    def _added_to(
-        self, basis: bases.Basis, models: list[Floats], what: SnapshotRequest
-    ) -> tuple[bases.Basis, float]:
-        error, near = 0.0, [theta for theta in models if self._is_near(basis, theta, what)]
-        corrected = self._corrected(basis, near, what) if near else None
-        if corrected:
-            basis, error = corrected
+        elif what.enough:
+            known = [theta for theta in models if basis.ritz_values(theta, n).size >= n]
+            lengths = bases.lacking_lengths(basis, known, n) if known else np.zeros(0)
+            ranked = np.argsort(-lengths, kind="stable")
+            worst = [known[k] for k in ranked if lengths[k] >= what.enough]
+            if known and not worst:
+                return basis, float(lengths.max())
+            models = (worst or models)[:WORST]
+        near = [theta for theta in models if self._is_near(basis, theta, what)]
+        if near and (corrected := self._corrected(basis, near, what)):
+            basis, error = corrected[0], max(error, corrected[1])
             models = [theta for theta in models if not any(theta is other for other in near)]
-        failed = 0
         for theta in models:
             try:
                 larger = self._solved(basis, theta, what)
             except ModelError:
                 failed += 1
                 continue
-            lam, lacked = larger.lowest(theta, what.modes).lam[: what.modes], np.inf
-            before = basis.ritz_values(theta, what.modes)[: what.modes]
+            lam, lacked = larger.lowest(theta, n).lam[:n], np.inf
+            before = basis.ritz_values(theta, n)[:n]
             if before.size == lam.size:
                 lacked = float(((before - lam) / (lam - larger.sigma)).max())
             basis, error = larger, max(error, lacked)
