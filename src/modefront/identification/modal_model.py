@@ -117,8 +117,7 @@ class Fit:
         scale = 1 / np.sqrt(np.maximum(A.diagonal(), least))
         value, vector = np.linalg.eigh(A * np.outer(scale, scale))
         half = scale[:, None] * vector / np.sqrt(np.maximum(value, ROUNDING) + damping)
-        out: Floats = half @ half.T
-        return out
+        return half @ half.T
 
     @property
     def freedom(self) -> int:
@@ -219,8 +218,7 @@ def thinned(fit: Fit, lam: Complexes) -> Problem:
 def _best(inverse: Floats, T: Floats, rho: Floats) -> Floats:
     """Return the linear parameters, (responses, linear), from products with the primitives."""
     right = np.einsum("jqa,jiq->ia", T, rho)
-    out: Floats = (inverse @ right[..., None])[..., 0]
-    return out
+    return (inverse @ right[..., None])[..., 0]
 
 
 def maximise(

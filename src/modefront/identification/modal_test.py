@@ -134,8 +134,7 @@ class IdentifiedTest(Shown):
             for name, identification in zip(self.names, self.identified, strict=True)
         ]
         said = {"test": self.test.name, "warnings": self.warnings, "sets": sets}
-        out: dict[str, Any] = json.loads(json_of(said))
-        return out
+        return json.loads(json_of(said))
 
     def __repr__(self) -> str:
         """Return the modes, a line each, and the first warnings."""

@@ -36,8 +36,7 @@ class RealShape:
         change = self.turn * dphi / self.norm
         dtheta = (u @ change.imag + y @ change.real) / max(1 - float(y @ y), TINY)
         dx = change.real + np.outer(y, dtheta)
-        out: Floats = dx - self.plane @ (self.plane.T @ dx)
-        return out
+        return dx - self.plane @ (self.plane.T @ dx)
 
 
 def phase_collinearity(phi: Complexes) -> float:

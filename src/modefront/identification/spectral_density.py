@@ -74,8 +74,7 @@ class Band:
     def total(self) -> Floats:
         """Sum of the real part of F F^* over the lines, and of the background a priori."""
         prior = (PRIOR + len(self.floor)) * np.diag(self.floor)
-        out: Floats = np.tensordot(self.count, self.power.real, 1) + prior
-        return out
+        return np.tensordot(self.count, self.power.real, 1) + prior
 
     @property
     def weight(self) -> float:
@@ -123,8 +122,7 @@ class Density:
     @property
     def force(self) -> Complexes:
         """S, (modes, modes)."""
-        out: Complexes = self.root @ self.root.conj().T
-        return out
+        return self.root @ self.root.conj().T
 
     def response(self, omega: Floats, order: int) -> Complexes:
         """Return h at circular frequencies, (modes, lines)."""
@@ -207,8 +205,7 @@ class Fit:
         """A square root of the covariance of all parameters, with as many columns."""
         A, scale = self.scaled()
         value, vector = la.eigh(A)
-        out: Floats = scale[:, None] * vector / np.sqrt(np.maximum(value, LEAST_KNOWN))
-        return out
+        return scale[:, None] * vector / np.sqrt(np.maximum(value, LEAST_KNOWN))
 
     @property
     def freedom(self) -> float:
@@ -222,8 +219,7 @@ class Fit:
         n, m = len(self.model.phi), self.model.free
         first = self.model.moving * n + mode
         half = self.root[[first, first + m, *range(mode * n, (mode + 1) * n)]]
-        out: Floats = half @ half.T
-        return out
+        return half @ half.T
 
 
 @dataclass(frozen=True)
@@ -248,14 +244,12 @@ class _Matrices:
     @cached_property
     def both(self) -> Complexes:
         """Sum of D hat^T F F^* over the lines, of w F^* as expected, (columns, sensors)."""
-        out: Complexes = np.tensordot(self.weighted, self.seen.conj(), ((0, 2), (0, 2)))
-        return out
+        return np.tensordot(self.weighted, self.seen.conj(), ((0, 2), (0, 2)))
 
     @cached_property
     def second(self) -> Complexes:
         """Sum of w w^* as expected, (columns, columns); w are the responses to the forces."""
-        out: Complexes = (self.weighted + self.weighted @ self.own @ self.D).sum(axis=0)
-        return out
+        return (self.weighted + self.weighted @ self.own @ self.D).sum(axis=0)
 
 
 def _matrices(band: Band, model: Density) -> _Matrices:
@@ -343,8 +337,7 @@ def _bending(G: Complexes) -> Floats:
     value, vector = np.linalg.eigh(G)
     G = vector * np.maximum(value, 0.0) @ vector.conj().T
     same = columns[:, None] == columns
-    out: Floats = 2 * same * (units.conj()[:, None] * G[np.ix_(rows, rows)] * units).real
-    return out
+    return 2 * same * (units.conj()[:, None] * G[np.ix_(rows, rows)] * units).real
 
 
 def _information(model: Density, x: _Matrices, c: Floats, d: Complexes, J: Complexes) -> Floats:
@@ -366,8 +359,7 @@ def _information(model: Density, x: _Matrices, c: Floats, d: Complexes, J: Compl
 
     def each(a: Complexes, b: Complexes) -> Complexes:
         """Return the sum of c a_rp b_pt over the lines, (p, r, t)."""
-        out: Complexes = np.ascontiguousarray(a.T * c) @ np.ascontiguousarray(b.swapaxes(0, 1))
-        return out
+        return np.ascontiguousarray(a.T * c) @ np.ascontiguousarray(b.swapaxes(0, 1))
 
     # (a_r^* E^-1)_l (a_s^* E^-1)_j + Q_rs (E^-1)_lj
     SS = gram(D[:, :v], D[:, :v]).swapaxes(1, 2) - gram(Q[:, :v, :v], D)
@@ -386,10 +378,9 @@ def _information(model: Density, x: _Matrices, c: Floats, d: Complexes, J: Compl
     Ch = left @ C @ h
     FF = flat.T @ gram(Ch, Ch).transpose(1, 2, 3, 0).reshape(M**2, M**2) @ flat
     SS, SP, SF = (y.reshape(v * n, size) for y, size in ((SS, v * n), (SP, 2 * m), (SF, M**2)))
-    out: Floats = np.block(
+    return np.block(
         [[2 * SS, 2 * SP, 2 * SF], [2 * SP.T, 2 * PP, 2 * PF], [2 * SF.T, 2 * PF.T, FF]]
     ).real
-    return out
 
 
 def _background(band: Band, model: Density, x: _Matrices) -> tuple[Floats, Floats]:

@@ -104,8 +104,7 @@ def _force(fit: Fit) -> Floats:
     b = per_line.sum(axis=1)
     error = np.sqrt((per_line**2).sum(axis=1))
     good = (b > SIGNIFICANT * error) & (below > 0)
-    out: Floats = np.where(good, b / np.where(below > 0, below, 1.0), 0.0)
-    return out
+    return np.where(good, b / np.where(below > 0, below, 1.0), 0.0)
 
 
 def mode_estimates(fit: Fit, residuals: Residuals, omega: float) -> list[ModeEstimate]:
@@ -161,8 +160,7 @@ def _silent(phi: Complexes, covariance: Floats) -> Bools:
     """
     c = np.stack([phi.real, phi.imag], axis=1).reshape(-1, phi.shape[1]).T[..., None]
     size = c.swapaxes(1, 2) @ np.linalg.pinv(covariance, hermitian=True) @ c
-    out: Bools = size[:, 0, 0] < chi2.isf(SILENT, c.shape[1])
-    return out
+    return size[:, 0, 0] < chi2.isf(SILENT, c.shape[1])
 
 
 def _covariances(fit: Fit, residuals: Residuals) -> Floats:
@@ -188,8 +186,7 @@ def _covariances(fit: Fit, residuals: Residuals) -> Floats:
     P = np.zeros((*M.shape[:3], 2 * n + X.shape[3]))
     P[:, :, :first, : 2 * n] = T[:, None] @ fit.inverse[:, :, : 2 * n]
     P[..., 2 * n :] = X
-    out: Floats = (P.swapaxes(2, 3) @ (M @ P)).sum(axis=0) / 2
-    return out
+    return (P.swapaxes(2, 3) @ (M @ P)).sum(axis=0) / 2
 
 
 def _force_influence(

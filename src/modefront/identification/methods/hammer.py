@@ -249,5 +249,4 @@ def _visibility(fit: Fit) -> Floats:
     a = (model.L.T[:, None, :] * model.phi.T)[task.weight.any(axis=2)]  # (functions, modes)
     parts = np.abs(a.real[..., None] * E[::2] + a.imag[..., None] * E[1::2])
     shares = parts / np.maximum(parts.sum(axis=1, keepdims=True), TINY)
-    out: Floats = np.einsum("irr->ir", shares).max(axis=0, initial=0.0)
-    return out
+    return np.einsum("irr->ir", shares).max(axis=0, initial=0.0)
