@@ -199,8 +199,3 @@ def test_what_a_pole_explains_beside_a_close_one_is_what_a_fit_gains_by_it() -> 
     gained = 2 * (one.cost - maximise(task, start, np.ones((3, 1), complex)).cost)
     assert gained > 100
     assert 0.8 * gained < gain.max() < 1.05 * gained
-
-
-def test_too_few_lines_are_an_error() -> None:
-    with pytest.raises(ValueError, match="20 lines in the band, found 5"):
-        identify(frequency_responses(np.arange(1.0, 6.0), np.ones((1, 5), complex)))

@@ -20,8 +20,6 @@ def _set(
     return SENSORS, [
         ModeEstimate(
             2 * np.pi * f * (1j * np.sqrt(1 - zeta**2) - zeta),
-            f,
-            zeta,
             0.001,
             0.001,
             real_shape(phi + 0j),

@@ -86,7 +86,7 @@ def _likelihood(
 ) -> tuple[float, Complexes, Complexes]:
     """Return the cost of lines, and R with E^-1 = R R^* and H L at each of them."""
     half, C = model.factors(lines.omega[near], lines.order)
-    root = np.linalg.inv(C).conj().mT
+    root = np.asarray(np.linalg.inv(C), complex).conj().mT
     misfit = np.sum(np.abs(np.einsum("kji,kj->ki", root.conj(), lines.F[:, near].T)) ** 2)
     determinant = 2 * np.log(np.einsum("kii->ki", C).real).sum(axis=1)
     return float(lines.share[near] @ determinant + misfit), root, half

@@ -33,9 +33,7 @@ class ModeEstimate:
     """One mode with its standard deviations, in physical units."""
 
     pole: complex  # rad/s
-    frequency: float  # frequency, damping: Hz, ratio
-    damping: float
-    frequency_std: float  # frequency_std, damping_std: their standard deviations
+    frequency_std: float  # frequency_std, damping_std: standard deviations, Hz and ratio
     damping_std: float
     shape: RealShape  # the complex shape and the real one
     # (responses,) standard deviations of the real shape of unit norm; NaN where the response was
@@ -46,6 +44,16 @@ class ModeEstimate:
     evidence: Evidence = Evidence()  # what speaks for it
     # (responses, responses) of the real shape, None for more than `MOST_COVARIED`
     shape_covariance: Floats | None = None
+
+    @property
+    def frequency(self) -> float:
+        """Natural frequency in Hz."""
+        return abs(self.pole) / (2 * np.pi)
+
+    @property
+    def damping(self) -> float:
+        """Damping ratio."""
+        return -self.pole.real / abs(self.pole)
 
 
 @dataclass(frozen=True)

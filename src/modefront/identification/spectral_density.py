@@ -145,7 +145,8 @@ class Density:
         """Return H L and the lower triangular root of E at circular frequencies."""
         half = self.lifted(omega, order) @ self.root
         moved = self.columns @ half
-        return half, np.linalg.cholesky(moved @ moved.conj().swapaxes(1, 2) + self.background)
+        E = moved @ moved.conj().swapaxes(1, 2) + self.background
+        return half, np.asarray(np.linalg.cholesky(E), complex)
 
     def with_coherent(self, band: Band) -> "Density":
         """Return the same model with R = 0 as parameters, in the middle of a band.
@@ -204,7 +205,7 @@ class Fit:
         determinant = 2 * np.log(np.einsum("kii->ki", L).real).sum(axis=1)
         determinant[lost] = np.inf
         self.N, self.D = root @ adjoint, half.conj().swapaxes(1, 2) @ half
-        self.Y = np.eye(len(P)) - self.D @ P
+        self.Y: Complexes = np.eye(len(P)) - self.D @ P
         self.C = P @ self.Y
         self.seen = (band.power.reshape(-1, n) @ self.hat).reshape(len(self.h), *self.hat.shape)
         self.own, self.weighted = self.hat.T @ self.seen, band.count[:, None, None] * self.D

@@ -132,7 +132,7 @@ def mode_estimates(fit: Fit, residuals: Residuals, omega: float) -> list[ModeEst
         for r, shape in enumerate(shapes):
             change = shape.differential(c[:, 2 * r] + 1j * c[:, 2 * r + 1])
             spread[r] += change @ change.T if whole else np.vecdot(change, change)
-    scale, hertz = max(residuals.chi2, 1.0), omega / (2 * np.pi)
+    scale = max(residuals.chi2, 1.0)
     gone = ~fit.task.weight.any(axis=(0, 2)) | _silent(model.phi, scale * own)
     out = []
     for r, covariance in enumerate(spread):
@@ -145,11 +145,10 @@ def mode_estimates(fit: Fit, residuals: Residuals, omega: float) -> list[ModeEst
         df = np.array([lam.real, lam.imag]) / size
         two = np.array([df, np.array([-1 / size, 0.0]) + lam.real / size**2 * df])
         f_std, zeta_std = np.sqrt(np.einsum("ka,ab,kb->k", two, of_pole, two)).tolist()
-        known = complex(lam) * omega, size * hertz, float(-lam.real) / size, f_std * hertz, zeta_std
+        stds = f_std * omega / (2 * np.pi), zeta_std
         std = np.sqrt(np.maximum(covariance.diagonal() if whole else covariance, 0.0))
-        rest = shapes[r], std, model.L[r]
-        kept = covariance if whole else None
-        out.append(ModeEstimate(*known, *rest, shape_covariance=kept))
+        of_shape, kept = (shapes[r], std, model.L[r]), covariance if whole else None
+        out.append(ModeEstimate(complex(lam) * omega, *stds, *of_shape, shape_covariance=kept))
     return out
 
 

@@ -97,6 +97,20 @@ class Local:
         """Half bandwidth in rad/s."""
         return self.zeta * self.omega
 
+    @property
+    def estimate(self) -> ModeEstimate:
+        """The mode with its standard deviations, in physical units."""
+        stds = np.sqrt(np.diag(self.covariance))
+        return ModeEstimate(
+            complex(-self.half, self.omega * np.sqrt(1 - self.zeta**2)),
+            float(stds[0]) * self.omega / (2 * np.pi),
+            float(stds[1]) * self.zeta,
+            real_shape(np.nan_to_num(self.phi).astype(complex)),
+            stds[2:],
+            np.zeros(0, complex),
+            shape_covariance=self.covariance[2:, 2:],
+        )
+
 
 @dataclass(frozen=True)
 class _Setup:
@@ -123,14 +137,10 @@ def identify(
     """Return the modes of the structure within a band in Hz, from the records of all setups.
 
     ``modes`` is their number where it is known; ``seeds`` are frequencies in Hz at which a mode is
-    kept whatever its evidence. Sensors of the same name in several setups are the references.
-    Raises ValueError where the band has too few lines.
+    kept whatever its evidence. Sensors of the same name in several setups are the references. The
+    band has `LEAST_LINES` of each.
     """
     low, high = band or default_band(setups)
-    for records in setups:
-        count = int((min(high, records.rate / 2) - low) * records.duration)
-        if count < LEAST_LINES:
-            raise ValueError(f"expected {LEAST_LINES} lines in the band, found {max(count, 0)}")
     identified = [_of_setup(records, low, high, seeds) for records in setups]
     groups = _groups(identified, LEAST_MAC)
     identified = [_completed(k, identified, groups) for k in range(len(setups))]
@@ -368,31 +378,9 @@ def _shares(band: Band, model: Density) -> Floats:
     return np.minimum(shares.max(axis=0), 1.0)
 
 
-def _estimate(omega: float, zeta: float, phi: Floats, covariance: Floats) -> ModeEstimate:
-    """Return a mode in physical units, with the covariance of ln omega, ln zeta and phi."""
-    shape, stds = real_shape(np.nan_to_num(phi).astype(complex)), np.sqrt(np.diag(covariance))
-    return ModeEstimate(
-        complex(-zeta * omega, omega * np.sqrt(1 - zeta**2)),
-        omega / (2 * np.pi),
-        zeta,
-        float(stds[0]) * omega / (2 * np.pi),
-        float(stds[1]) * zeta,
-        shape,
-        stds[2:],
-        np.zeros(0, complex),
-        shape_covariance=covariance[2:, 2:],
-    )
-
-
 def _groups(setups: Sequence[_Setup], least: float = 0.0) -> list[dict[int, int]]:
     """Return which mode of each setup every mode of the structure is."""
-    local = [
-        (
-            each.records.sensors,
-            [_estimate(x.omega, x.zeta, x.phi, x.covariance) for x in each.modes],
-        )
-        for each in setups
-    ]
+    local = [(x.records.sensors, [mode.estimate for mode in x.modes]) for x in setups]
     return mode_groups(local, least)
 
 
@@ -486,9 +474,8 @@ def _of_structure(
     covariances = [mode.covariance[2:, 2:] for _, mode in having]
     shapes = [mode.phi for _, mode in having]
     phi, C, of_shapes = merged_shape(places, shapes, covariances, len(sensors))
-    omega, zeta = np.exp(means).tolist()
-    misfits = float(misfit.sum() + of_shapes)
-    return _estimate(omega, zeta, phi, la.block_diag(of_pole, C)), misfits
+    merged = Local(*np.exp(means).tolist(), phi, covariance=la.block_diag(of_pole, C))
+    return merged.estimate, float(misfit.sum() + of_shapes)
 
 
 def _evidence(

@@ -47,14 +47,9 @@ def identify(
     """Return the modes of one data set within a band in Hz, by default all of it.
 
     ``modes`` is their number where it is known; ``seeds`` are frequencies in Hz at which a mode is
-    kept whatever its evidence. Raises ValueError where the band has too few lines or nothing was
-    measured in it.
+    kept whatever its evidence. The band has `LEAST_LINES`, and functions that are not zero.
     """
     data = data.within(*(band or (0.0, np.inf)))
-    if len(data.frequency) < LEAST_LINES:
-        raise ValueError(f"expected {LEAST_LINES} lines in the band, found {len(data.frequency)}")
-    if not np.any(np.abs(np.nan_to_num(data.H)) > 0):
-        raise ValueError("expected functions that are not zero, found only zeros")
     kind = weighting(data)
     if data.variance is None or kind == "residuals":
         first = variance_from_differences(data.H)
