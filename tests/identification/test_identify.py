@@ -107,7 +107,7 @@ def test_coherence_weights_and_tells_the_variance() -> None:
     data = frequency_responses(F, measured.mean(axis=0), coherence=coherence, blows=10)
     result = identify(data, (1, 30))
     assert len(result.modes) == 3
-    assert result.functions.residuals.chi2 == pytest.approx(1, abs=0.15)
+    assert result.residuals.chi2 == pytest.approx(1, abs=0.15)
 
 
 def test_a_dead_channel_and_gaps_are_left_out() -> None:

@@ -14,20 +14,7 @@ MOST_COVARIED = 200
 """Responses of which covariances of shapes are kept: a file of 40 modes then has 25 MB."""
 
 
-@dataclass(frozen=True)
-class Evidence:
-    """What speaks for a mode, and what to look at."""
-
-    # how much better the fit is than that without the mode, 2 Delta J over the noise, over the
-    # least that a mode needs
-    gain: float = np.nan
-    # share of the orders of the diagram, from the first one with its pole, that have it
-    support: float = np.nan
-    # its greatest share, over all functions, in the sum of all modes at its frequency
-    visibility: float = np.nan
-    flags: tuple[str, ...] = ()  # reasons to look at it
-
-
+# 11 fields: what a mode is, and what speaks for it.
 @dataclass(frozen=True)
 class ModeEstimate:
     """One mode with its standard deviations, in physical units."""
@@ -41,9 +28,16 @@ class ModeEstimate:
     shape_std: Floats
     # (references,) factors that go with the complex shape as given, before rotation
     participation: Complexes
-    evidence: Evidence = Evidence()  # what speaks for it
     # (responses, responses) of the real shape, None for more than `MOST_COVARIED`
     shape_covariance: Floats | None = None
+    # how much better the fit is than that without the mode, 2 Delta J over the noise, over the
+    # least that a mode needs
+    gain: float = np.nan
+    # share of the orders of the diagram, from the first one with its pole, that have it
+    support: float = np.nan
+    # its greatest share, over all functions, in the sum of all modes at its frequency
+    visibility: float = np.nan
+    flags: tuple[str, ...] = ()  # reasons to look at it
 
     @property
     def frequency(self) -> float:
@@ -83,16 +77,7 @@ class Residuals:
         return float(1 + 2 * self.correlation[1:].real.sum())
 
 
-@dataclass(frozen=True)
-class FittedFunctions:
-    """Measured functions beside those of the modal model."""
-
-    data: FrequencyResponses  # the functions within the band
-    synthesised: Complexes  # functions of the model, of the shape of ``data.H``
-    residuals: Residuals  # what the residuals say
-    residual_terms: int  # number of residual terms on either side of the band
-
-
+# 11 fields: modes, what was measured, and how it was fitted.
 @dataclass(frozen=True)
 class Identification:
     """Modes of one data set."""
@@ -102,9 +87,12 @@ class Identification:
     modes: tuple[ModeEstimate, ...]  # accepted modes by frequency
     rejected: tuple[Rejected, ...]  # what was found besides, and why it is no mode
     diagram: StabilisationDiagram  # poles of all orders
-    functions: FittedFunctions  # measured and fitted functions
-    evaluations: int  # number of evaluations of the model in the last fit
-    converged: bool  # whether it met its tolerance
+    data: FrequencyResponses  # the functions within the band
+    synthesised: Complexes  # functions of the modal model, of the shape of ``data.H``
+    residuals: Residuals  # what the residuals say
+    residual_terms: int = 0  # number of residual terms on either side of the band
+    evaluations: int = 0  # number of evaluations of the model in the last fit
+    converged: bool = True  # whether it met its tolerance
 
     @property
     def pairs(self) -> tuple[tuple[int, int], ...]:

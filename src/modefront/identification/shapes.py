@@ -17,7 +17,7 @@ class RealShape:
 
     complex_shape: Complexes  # (responses,) rotated, its real part of unit norm
     shape: Floats  # (responses,) its real part
-    collinearity: float  # MPC
+    collinearity: float  # MPC, modal phase collinearity, from 0 to 1
     norm: float  # that of the real part before it was scaled
     # the rotation, exp(-i theta), with the sign that makes the greatest component positive
     turn: complex
@@ -39,12 +39,6 @@ class RealShape:
         return dx - self.plane @ (self.plane.T @ dx)
 
 
-def phase_collinearity(phi: Complexes) -> float:
-    """Return the modal phase collinearity of a shape, from 0 to 1."""
-    power = max(float(np.sum(np.abs(phi) ** 2)), TINY)
-    return float(min((np.abs(np.sum(phi**2)) / power) ** 2, 1.0))
-
-
 def real_shape(phi: Complexes) -> RealShape:
     """Return the rotation of a shape that loses least; its greatest component is positive."""
     return real_shapes(phi[None])[0]
@@ -58,10 +52,10 @@ def real_shapes(phi: Complexes) -> list[RealShape]:
         turn, psi = -turn, -psi
     norm = np.maximum(np.linalg.norm(psi.real, axis=1), TINY)
     psi = psi / norm[:, None]
-    return [
-        RealShape(each, each.real, phase_collinearity(each), size, complex(turn), psi.real.T)
-        for each, size in zip(psi, norm.tolist(), strict=True)
-    ]
+    power = np.maximum(np.sum(np.abs(psi) ** 2, axis=1), TINY)
+    mpc = np.minimum((np.abs(np.sum(psi**2, axis=1)) / power) ** 2, 1.0)
+    each = zip(psi, mpc.tolist(), norm.tolist(), strict=True)
+    return [RealShape(x, x.real, share, size, complex(turn), psi.real.T) for x, share, size in each]
 
 
 def plane_basis(phi: Complexes) -> Complexes:

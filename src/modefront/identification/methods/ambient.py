@@ -19,8 +19,6 @@ from modefront.data.modal_test import Records
 from modefront.data.responses import FrequencyResponses
 from modefront.identification import harmonics, selection, spectra, spectral_density
 from modefront.identification.record import (
-    Evidence,
-    FittedFunctions,
     Identification,
     ModeEstimate,
     Rejected,
@@ -420,34 +418,34 @@ def _combined(
         freedom = sum(local.freedom for _, local in having)
         gain = sum(local.gain for _, local in having) - misfit
         gain /= float(chi2.isf(FALSE / lines, freedom))
-        mode = replace(mode, evidence=_evidence(having, mode, len(setups), gain))
+        mode = _judged(having, mode, len(setups), gain)
         if not any(local.held for _, local in having):
             why = _harmonic(having)
             if len(having) == 1 < len(setups):
                 why = "none of the other setups has it, where its pole was tried"
-            elif mode.evidence.gain < 1:
+            elif mode.gain < 1:
                 why = "noise alone may explain as much in all setups"
         if why:
             rejected.append(Rejected(mode.frequency, mode.damping, why))
         else:
             modes.append(mode)
     if count is not None and len(modes) > count:
-        order = sorted(modes, key=lambda mode: -mode.evidence.gain)
+        order = sorted(modes, key=lambda mode: -mode.gain)
         rejected += [
             Rejected(mode.frequency, mode.damping, "weaker than the modes asked for")
             for mode in order[count:]
         ]
         modes = order[:count]
-    first = max(setups, key=lambda setup: len(setup.records.sensors))
+    first, data = max(setups, key=lambda x: len(x.records.sensors)), _densities(setups, sensors)
     return Identification(
         sensors,
         band,
         tuple(sorted(modes, key=lambda mode: mode.frequency)),
         tuple(sorted(rejected, key=lambda pole: pole.frequency)),
         first.diagram,
-        _functions(setups, sensors),
-        0,
-        converged=True,
+        data,
+        np.full(data.H.shape, np.nan, complex),
+        Residuals(1.0, np.ones(1, complex), np.zeros(1), np.full(data.H.shape[:2], np.nan)),
     )
 
 
@@ -478,9 +476,10 @@ def _of_structure(
     return merged.estimate, float(misfit.sum() + of_shapes)
 
 
-def _evidence(
+def _judged(
     having: Sequence[tuple[_Setup, Local]], mode: ModeEstimate, setups: int, gain: float
-) -> Evidence:
+) -> ModeEstimate:
+    """Return a mode with what speaks for it."""
     share = max(
         float(support(setup.diagram, np.array([mode.pole]), np.ones(1))[0]) for setup, _ in having
     )
@@ -493,7 +492,8 @@ def _evidence(
         flags.append("its band holds more than its modes: errors may be greater than they seem")
     if mode.damping_std > mode.damping / 2:
         flags.append("damping hardly determined: the record is short")
-    return Evidence(gain, share, max(local.share for _, local in having), tuple(flags))
+    visible = max(local.share for _, local in having)
+    return replace(mode, gain=gain, support=share, visibility=visible, flags=tuple(flags))
 
 
 def _harmonic(having: Sequence[tuple[_Setup, Local]]) -> str:
@@ -507,7 +507,7 @@ def _harmonic(having: Sequence[tuple[_Setup, Local]]) -> str:
     return ""
 
 
-def _functions(setups: Sequence[_Setup], sensors: tuple[str, ...]) -> FittedFunctions:
+def _densities(setups: Sequence[_Setup], sensors: tuple[str, ...]) -> FrequencyResponses:
     """Return the spectral densities of all sensors, each from the first setup that has it."""
     lines = setups[0].lines
     edges = np.linspace(lines.omega[0], lines.omega[-1], min(LINES_SHOWN, len(lines.omega)) + 1)
@@ -518,7 +518,4 @@ def _functions(setups: Sequence[_Setup], sensors: tuple[str, ...]) -> FittedFunc
             power = np.histogram(setup.lines.omega, edges, weights=np.abs(F) ** 2)[0]
             density[0, sensors.index(name)] = power / np.maximum(count, 1)
     f = (edges[1:] + edges[:-1]) / (4 * np.pi)
-    data = FrequencyResponses(f, density, "receptance", ("spectral density",), sensors)
-    nothing = np.full(density.shape[:2], np.nan)
-    residuals = Residuals(1.0, np.ones(1, complex), np.zeros(1), nothing)
-    return FittedFunctions(data, np.full(density.shape, np.nan, complex), residuals, 0)
+    return FrequencyResponses(f, density, "receptance", ("spectral density",), sensors)

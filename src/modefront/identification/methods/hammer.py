@@ -16,13 +16,7 @@ from modefront.identification import selection, stabilisation
 from modefront.identification.modal_model import Fit, evaluate
 from modefront.identification.noise import fitted_variance, square, variance_from_differences
 from modefront.identification.problem import RESIDUALS, primitives, problem
-from modefront.identification.record import (
-    Evidence,
-    FittedFunctions,
-    Identification,
-    ModeEstimate,
-    Rejected,
-)
+from modefront.identification.record import Identification, ModeEstimate, Rejected
 from modefront.identification.statistics import mode_estimates, residuals
 from modefront.linalg.small import mac
 from modefront.rounding import TINY
@@ -173,32 +167,32 @@ def _result(
         else:
             rejected.append(Rejected(mode.frequency, mode.damping, why))
     shares = stabilisation.support(diagram, fit.model.lam * omega, gain)
-    evidence = _evidence(fit, f, gain / selection.needed(task), shares, estimates, kept)
-    modes = [replace(estimates[k], evidence=evidence[k]) for k in kept]
-    terms = len(RESIDUALS) // 2
-    functions = FittedFunctions(data, fit.functions * size, misfit, terms)
+    judged = _judged(fit, f, gain / selection.needed(task), shares, estimates, kept)
     return Identification(
         data.responses,
         (float(f[0]), float(f[-1])),
-        tuple(sorted(modes, key=lambda mode: mode.frequency)),
+        tuple(sorted((judged[k] for k in kept), key=lambda mode: mode.frequency)),
         tuple(sorted(rejected, key=lambda pole: pole.frequency)),
         diagram,
-        functions,
+        data,
+        fit.functions * size,
+        misfit,
+        len(RESIDUALS) // 2,
         fit.evaluations,
         fit.converged,
     )
 
 
 # 6 arguments: what speaks for a mode, and its neighbours.
-def _evidence(
+def _judged(
     fit: Fit,
     frequency: Floats,
     gain: Floats,
     shares: Floats,
     estimates: Sequence[ModeEstimate],
     kept: Sequence[int],
-) -> list[Evidence]:
-    """Return what speaks for every mode; only those that are ``kept`` are neighbours."""
+) -> list[ModeEstimate]:
+    """Return all modes with what speaks for each; only those that are ``kept`` are neighbours."""
     visible, alike = _visibility(fit), mac(fit.model.phi.T, fit.model.phi.T)
     spacing = float(np.median(np.diff(frequency)))
     out = []
@@ -232,7 +226,9 @@ def _evidence(
                     f"within the half bandwidth of {other.frequency:.5g} Hz: one peak split in "
                     "two, or two modes that one reference cannot tell apart"
                 )
-        out.append(Evidence(float(gain[r]), float(shares[r]), float(visible[r]), tuple(flags)))
+        g, share, seen = float(gain[r]), float(shares[r]), float(visible[r])
+        flagged = replace(mode, gain=g, support=share, visibility=seen, flags=tuple(flags))
+        out.append(flagged)
     return out
 
 
