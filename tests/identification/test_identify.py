@@ -195,7 +195,7 @@ def test_what_a_pole_explains_beside_a_close_one_is_what_a_fit_gains_by_it() -> 
     task, omega, _ = problem(data, data.variance)
     one = maximise(task, lam[[0, 2]] / omega, np.ones((2, 1), complex))
     gain = one.found.gain * one.found.noise
-    start: Complexes = np.append(one.model.lam, one.found.lam[gain.argmax()])
+    start: Complexes = np.append(one.lam, one.found.lam[gain.argmax()])
     gained = 2 * (one.cost - maximise(task, start, np.ones((3, 1), complex)).cost)
     assert gained > 100
     assert 0.8 * gained < gain.max() < 1.05 * gained

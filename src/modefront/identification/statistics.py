@@ -15,7 +15,7 @@ import scipy.linalg as la
 from scipy.stats import chi2
 
 from modefront._typing import Bools, Complexes, Floats
-from modefront.identification.modal_model import Fit, columns
+from modefront.identification.modal_model import Fit
 from modefront.identification.noise import square
 from modefront.identification.problem import Problem, gram
 from modefront.identification.record import MOST_COVARIED, ModeEstimate, Residuals
@@ -109,15 +109,15 @@ def _force(fit: Fit) -> Floats:
 
 def mode_estimates(fit: Fit, residuals: Residuals, omega: float) -> list[ModeEstimate]:
     """Return all modes of a fit with standard deviations; ``omega`` is the unit of the poles."""
-    model, n = fit.model, 2 * len(fit.model)
-    pole = [k for k, _, v in model.alphas if v is None]
-    shapes = [real_shape(phi) for phi in model.phi]
-    for r, s in model.pairs:
-        shapes[r], shapes[s] = real_shapes(model.phi[[r, s]])
+    n = 2 * len(fit.lam)
+    pole = [k for k, _, v in fit.alphas if v is None]
+    shapes = [real_shape(phi) for phi in fit.phi]
+    for r, s in fit.pairs:
+        shapes[r], shapes[s] = real_shapes(fit.phi[[r, s]])
     inverse, follows = fit.inverted(fit.information), fit.Z[:, :n]
     Q = _covariances(fit, residuals)
     own, C = Q[:, :n, :n], inverse @ Q[:, n:, n:].sum(axis=0) @ inverse
-    whole = model.phi.shape[1] <= MOST_COVARIED
+    whole = fit.phi.shape[1] <= MOST_COVARIED
     spread = []
     for r, shape in enumerate(shapes):
         rows = slice(2 * r, 2 * r + 2)
@@ -133,21 +133,21 @@ def mode_estimates(fit: Fit, residuals: Residuals, omega: float) -> list[ModeEst
             change = shape.differential(c[:, 2 * r] + 1j * c[:, 2 * r + 1])
             spread[r] += change @ change.T if whole else np.vecdot(change, change)
     scale = max(residuals.chi2, 1.0)
-    gone = ~fit.task.weight.any(axis=(0, 2)) | _silent(model.phi, scale * own)
+    gone = ~fit.task.weight.any(axis=(0, 2)) | _silent(fit.phi, scale * own)
     out = []
     for r, covariance in enumerate(spread):
         covariance *= scale
         covariance[gone] = np.nan
         if whole:
             covariance[:, gone] = np.nan
-        lam, of_pole = model.lam[r], C[2 * pole[r] :, 2 * pole[r] :][:2, :2] * scale
+        lam, of_pole = fit.lam[r], C[2 * pole[r] :, 2 * pole[r] :][:2, :2] * scale
         size = float(abs(lam))
         df = np.array([lam.real, lam.imag]) / size
         two = np.array([df, np.array([-1 / size, 0.0]) + lam.real / size**2 * df])
         f_std, zeta_std = np.sqrt(np.einsum("ka,ab,kb->k", two, of_pole, two)).tolist()
         stds = f_std * omega / (2 * np.pi), zeta_std
         std = np.sqrt(np.maximum(covariance.diagonal() if whole else covariance, 0.0))
-        of_shape, kept = (shapes[r], std, model.L[r]), covariance if whole else None
+        of_shape, kept = (shapes[r], std, fit.L[r]), covariance if whole else None
         out.append(ModeEstimate(complex(lam) * omega, *stds, *of_shape, shape_covariance=kept))
     return out
 
@@ -168,8 +168,8 @@ def _covariances(fit: Fit, residuals: Residuals) -> Floats:
     They are those of G^-1 Phi^T dy, (2 modes), and D_perp^T dy, (alphas). Noise of the force is
     taken out of the variance: it is not independent.
     """
-    task, n = fit.task, len(fit.model)
-    E, T, X = columns(fit)
+    task, n = fit.task, len(fit.lam)
+    E, T, X = fit.columns()
     first, weight = T.shape[1], task.weight
     if residuals.force.any():
         variance = residuals.force[:, None]
@@ -196,7 +196,7 @@ def _force_influence(
     Those of the shapes are (responses, 2 modes, errors).
     """
     n = follows.shape[1]
-    E, T, X = columns(fit)
+    E, T, X = fit.columns()
     for j in np.flatnonzero(force).tolist():
         weighted = fit.task.weight[j] * fit.functions[j]
         for products in _force_products(fit.task, E, weighted, j, force[j]):

@@ -13,7 +13,7 @@ import numpy as np
 from modefront._typing import Bools, Floats
 from modefront.data.responses import FrequencyResponses
 from modefront.identification import selection, stabilisation
-from modefront.identification.modal_model import Fit, evaluate
+from modefront.identification.modal_model import Fit
 from modefront.identification.noise import fitted_variance, square, variance_from_differences
 from modefront.identification.problem import RESIDUALS, primitives, problem
 from modefront.identification.record import Identification, ModeEstimate, Rejected
@@ -55,15 +55,15 @@ def identify(
         small, shared = data, first
     task, omega, _ = problem(small, shared)
     lam, L = diagram.pole[diagram.clusters] / omega, diagram.participation[diagram.clusters]
-    fit = selection.refit(evaluate(task, lam, L), lam, L)
-    fit = selection.refit(_reweighted(fit, kind), fit.model.lam, fit.model.L)
+    fit = selection.refit(Fit(task, lam, L), lam, L)
+    fit = selection.refit(_reweighted(fit, kind), fit.lam, fit.L)
     fit = selection.grow(selection.backward(fit, modes)[0], modes)
     task, omega, size = problem(data, first)
-    fit = evaluate(task, fit.model.lam, fit.model.L)
+    fit = Fit(task, fit.lam, fit.L)
     for _ in range(2):
-        fit = selection.refit(_reweighted(fit, kind), fit.model.lam, fit.model.L)
+        fit = selection.refit(_reweighted(fit, kind), fit.lam, fit.L)
     while True:
-        last = selection.refit(fit, fit.model.lam, fit.model.L, fine=True)
+        last = selection.refit(fit, fit.lam, fit.L, fine=True)
         fit, gain = selection.backward(last, modes)
         if fit is last:
             break
@@ -132,7 +132,7 @@ def _reweighted(fit: Fit, kind: str) -> Fit:
         weight = task.weight / np.where(factor > 0, factor, 1.0)
     else:
         weight = np.where(used, 1 / fitted_variance(raw, np.where(used, H, np.nan)), 0.0)
-    return replace(fit, task=replace(task, weight=weight))
+    return fit.of(replace(task, weight=weight))
 
 
 def _result(
@@ -150,8 +150,8 @@ def _result(
     fit = selection.paired(apart)
     task, misfit, f = fit.task, residuals(fit), data.frequency
     estimates = mode_estimates(fit, misfit, omega)
-    for pair in map(list, fit.model.pairs):  # the data do not exclude the poles apart
-        of_pair = apart.model.lam[pair]
+    for pair in map(list, fit.pairs):  # the data do not exclude the poles apart
+        of_pair = apart.lam[pair]
         ratios = of_pair.real / np.abs(of_pair)
         splits = np.ptp(np.abs(of_pair)) * omega / (4 * np.pi), np.ptp(ratios) / 2
         for r in pair:
@@ -166,7 +166,7 @@ def _result(
             kept.append(k)
         else:
             rejected.append(Rejected(mode.frequency, mode.damping, why))
-    shares = stabilisation.support(diagram, fit.model.lam * omega, gain)
+    shares = stabilisation.support(diagram, fit.lam * omega, gain)
     judged = _judged(fit, f, gain / selection.needed(task), shares, estimates, kept)
     return Identification(
         data.responses,
@@ -193,7 +193,7 @@ def _judged(
     kept: Sequence[int],
 ) -> list[ModeEstimate]:
     """Return all modes with what speaks for each; only those that are ``kept`` are neighbours."""
-    visible, alike = _visibility(fit), mac(fit.model.phi.T, fit.model.phi.T)
+    visible, alike = _visibility(fit), mac(fit.phi.T, fit.phi.T)
     spacing = float(np.median(np.diff(frequency)))
     out = []
     for r, mode in enumerate(estimates):
@@ -216,7 +216,7 @@ def _judged(
                 continue
             if other.pole == mode.pole:
                 flags.append("one of a pair: both shapes are a basis of a plane")
-            elif len(fit.model.phi[r]) > 1 and alike[r, k] > selection.SAME:
+            elif len(fit.phi[r]) > 1 and alike[r, k] > selection.SAME:
                 flags.append(
                     f"shape of {other.frequency:.5g} Hz (MAC {alike[r, k]:.2f}): one peak split in "
                     "two, or sensors that cannot tell them apart"
@@ -234,10 +234,10 @@ def _judged(
 
 def _visibility(fit: Fit) -> Floats:
     """Return the greatest share of every mode, over all functions, at its own frequency."""
-    task, model = fit.task, fit.model
-    resonances = replace(task, s=1j * np.abs(model.lam) + task.s[0].real)
-    E = primitives(resonances, model.lam, squares=False)[: 2 * len(model)]
-    a = (model.L.T[:, None, :] * model.phi.T)[task.weight.any(axis=2)]  # (functions, modes)
+    task = fit.task
+    resonances = replace(task, s=1j * np.abs(fit.lam) + task.s[0].real)
+    E = primitives(resonances, fit.lam, squares=False)[: 2 * len(fit.lam)]
+    a = (fit.L.T[:, None, :] * fit.phi.T)[task.weight.any(axis=2)]  # (functions, modes)
     parts = np.abs(a.real[..., None] * E[::2] + a.imag[..., None] * E[1::2])
     shares = parts / np.maximum(parts.sum(axis=1, keepdims=True), TINY)
     return np.einsum("irr->ir", shares).max(axis=0, initial=0.0)
