@@ -257,10 +257,9 @@ def maximise(
     fit = Fit(task, lam, L / np.abs(L).max(axis=1, keepdims=True), pairs)
     damping, evaluations, converged = 0.0, 1, not len(lam)
     while evaluations < most and not converged:
-        step = _step(fit, damping)
-        decrement = float(step @ fit.information @ step)
+        lam, L, decrement = _moved(fit, damping)
         noise = max(2 * fit.cost / max(task.count, 1), 1.0)
-        trial = Fit(task, *_moved(fit, step), pairs)
+        trial = Fit(task, lam, L, pairs)
         evaluations += 1
         converged = 2 * decrement <= tolerance * noise
         if trial.cost <= fit.cost * (1 + 1e-14):
@@ -305,23 +304,19 @@ def design(L: Complexes) -> Floats:
     return T
 
 
-def _step(fit: Fit, damping: float) -> Floats:
+def _moved(fit: Fit, damping: float) -> tuple[Complexes, Complexes, float]:
+    """Return poles and factors after a step, and its squared length in deviations, over 2."""
     step: Floats = -fit.inverted(fit.information, damping) @ fit.gradient
+    lam, L = fit.lam.copy(), fit.L.copy()
     # poles stay in the second quadrant, and none goes beyond its neighbourhood; each for itself,
     # as one that is drawn to the imaginary axis would hold up all others
     for k, r, v in fit.alphas:
+        own = step[2 * k : 2 * k + 2]
         if v is None:
-            lam = fit.lam[r]
-            room = np.array([-0.7 * lam.real, min(-10 * lam.real, 0.5 * lam.imag)])
-            step[2 * k : 2 * k + 2] = np.clip(step[2 * k : 2 * k + 2], -room, room)
-    return step
-
-
-def _moved(fit: Fit, step: Floats) -> tuple[Complexes, Complexes]:
-    lam, L, step = fit.lam.copy(), fit.L.copy(), step.view(complex)
-    for k, r, v in fit.alphas:
-        if v is None:
-            lam[r] += step[k]
+            pole = fit.lam[r]
+            room = np.array([-0.7 * pole.real, min(-10 * pole.real, 0.5 * pole.imag)])
+            own[:] = np.clip(own, -room, room)
+            lam[r] += complex(*own)
         else:
-            L[r] += step[k] * v
-    return lam, L
+            L[r] += complex(*own) * v
+    return lam, L, float(step @ fit.information @ step)

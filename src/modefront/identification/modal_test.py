@@ -339,7 +339,7 @@ def _plain_set(identification: Identification) -> dict[str, Any]:
                 "shape": mode.shape.complex_shape.view(float).reshape(-1, 2),
                 "real_shape_std": mode.shape_std,
                 "phase_collinearity": mode.shape.collinearity,
-                "loss": mode.shape.loss,
+                "loss": (1 - np.sqrt(mode.shape.collinearity)) / 2,  # of the imaginary part
                 "participation": mode.participation.view(float).reshape(-1, 2),
                 "evidence": mode.gain,
                 "support": mode.support,

@@ -25,11 +25,6 @@ class RealShape:
     # itself, and the other one of a pair
     plane: Floats
 
-    @property
-    def loss(self) -> float:
-        """Share of the squared norm that the imaginary part had."""
-        return float((1 - np.sqrt(self.collinearity)) / 2)
-
     def differential(self, dphi: Complexes) -> Floats:
         """Return du for changes of the shape that was given, both (responses, changes)."""
         u, y = self.shape, self.complex_shape.imag

@@ -81,11 +81,6 @@ class Band:
         """Number of lines, and of those that the prior is worth."""
         return float(self.count.sum() + PRIOR + len(self.floor))
 
-    @property
-    def reach(self) -> float:
-        """Half the width over the middle."""
-        return float(np.ptp(self.omega) / (self.omega[0] + self.omega[-1]))
-
 
 @dataclass(frozen=True)
 class Density:
@@ -153,9 +148,11 @@ class Density:
 
         A priori, either term is at the ends of the band `COHERENT` of the mode's own peak.
         """
-        n, size = len(self.phi), COHERENT / band.reach ** np.arange(TERMS)
+        first, last = band.omega[[0, -1]]
+        reach = (last - first) / (first + last)  # half the width over the middle
+        n, size = len(self.phi), COHERENT / reach ** np.arange(TERMS)
         precision: Floats = n / size.repeat(self.free) ** 2
-        R, middle = np.zeros((n, len(precision))), float(band.omega[[0, -1]].mean())
+        R, middle = np.zeros((n, len(precision))), float(first + last) / 2
         return replace(self, coherent=R, middle=middle, precision=precision)
 
     def without(self, mode: int, band: Band) -> "Density":
@@ -261,8 +258,8 @@ class Fit:
         columns[m : model.moving] += (model.precision * model.coherent).T
         NW = np.sum(self.N * self.slope.swapaxes(1, 2), axis=2)[:, :m]
         poles = 2 * np.sum(self.of_poles * np.hstack([NW, NW]), axis=0).real
-        J = self.of_forces.reshape(len(self.of_forces), -1)
-        forces = (J @ self.slope_of_forces.T.ravel()).real
+        whole = self.slope_of_forces.T.ravel()
+        forces = (self.of_forces.reshape(len(self.of_forces), whole.size) @ whole).real
         return np.concatenate([columns[: model.moving].ravel(), poles, forces])
 
     @cached_property
@@ -367,13 +364,13 @@ def _entries(M: int) -> tuple[Ints, Ints, Complexes]:
     return rows, columns, np.where(again, 1j, 1.0)
 
 
-def _background(x: Fit) -> tuple[Floats, Floats]:
-    r"""Return Q and z of a step of scoring of the background, to Q Q^T with Q as it is for z = 0.
+def _with_background(x: Fit, share: float) -> tuple[Fit, float]:
+    r"""Return a model after a step of its background, beside the data, and the share of the next.
 
-    With B = R R^T and changes R Z R^T, the second derivatives are :math:`\sum_k (I - V D V^T) Z
-    (I - V D V^T)`, V = R^-1 Psi, and the gradient is the step of expectation and maximisation
-    times the number of lines. In an orthonormal basis U of V and beside it, the parts of Z are
-    solved for one by one.
+    It is a step of scoring, halved until the cost falls. With B = R R^T and changes R Z R^T, the
+    second derivatives are :math:`\sum_k (I - V D V^T) Z (I - V D V^T)`, V = R^-1 Psi, and the
+    gradient is the step of expectation and maximisation times the number of lines. In an
+    orthonormal basis U of V and beside it, the parts of Z are solved for one by one.
     """
     band, model, psi = x.band, x.model, x.model.columns
     c, weight, both = band.count, band.weight, (psi @ x.both).real
@@ -396,18 +393,9 @@ def _background(x: Fit) -> tuple[Floats, Floats]:
     Z[:size, size:] = la.solve(weight * eye - single, Z[:size, size:], assume_a="pos")
     Z[size:, :size], Z[size:, size:] = Z[:size, size:].T, Z[size:, size:] / weight
     z, vector = la.eigh((Z + Z.T) / 2)
-    return R @ U @ vector, z
-
-
-def _with_background(x: Fit, share: float) -> tuple[Fit, float]:
-    """Return a model after a step of its background beside the data, and the share of the next one.
-
-    The step is halved until the cost falls.
-    """
-    Q, z = _background(x)
-    z = np.maximum(z, -MOST_OF_BACKGROUND)
+    z, Q = np.maximum(z, -MOST_OF_BACKGROUND), R @ U @ vector
     while share > SHORTEST:
-        after = Fit(x.band, replace(x.model, background=(Q * (1 + share * z)) @ Q.T))
+        after = Fit(band, replace(model, background=(Q * (1 + share * z)) @ Q.T))
         if after.cost <= x.cost:
             return after, min(2 * share, 1.0)
         share /= 2
