@@ -14,7 +14,7 @@ import scipy.fft
 import scipy.linalg as la
 from scipy.stats import chi2
 
-from modefront._typing import Bools, Complexes, Floats
+from modefront._typing import Complexes, Floats
 from modefront.identification.modal_model import Fit
 from modefront.identification.noise import square
 from modefront.identification.problem import Problem, gram
@@ -26,8 +26,7 @@ SIGNIFICANT = 3.0  # standard errors beyond which a correlation of the residuals
 SILENT = 1e-3  # probability that a response that holds nothing but noise is taken for one that does
 MOST_LAGS = 60  # lines over which correlations of the residuals are measured
 MOST_TIMES = 400  # samples of the noise of the force; they are taken together where there are more
-TOGETHER = 50  # samples of the noise of the force whose effects are computed at once
-CHUNK = 1 << 20  # numbers in an array of effects of lines that are computed at once
+CHUNK = 1 << 20  # numbers in an array of effects of errors that are computed at once
 
 
 def residuals(fit: Fit) -> Residuals:
@@ -133,7 +132,10 @@ def mode_estimates(fit: Fit, residuals: Residuals, omega: float) -> list[ModeEst
             change = shape.differential(c[:, 2 * r] + 1j * c[:, 2 * r + 1])
             spread[r] += change @ change.T if whole else np.vecdot(change, change)
     scale = max(residuals.chi2, 1.0)
-    gone = ~fit.task.weight.any(axis=(0, 2)) | _silent(fit.phi, scale * own)
+    # Some responses show nothing that noise would not make of all shapes.
+    c = np.stack([fit.phi.real, fit.phi.imag], axis=1).reshape(n, -1).T[..., None]
+    square_of = c.swapaxes(1, 2) @ np.linalg.pinv(scale * own, hermitian=True) @ c
+    gone = ~fit.task.weight.any(axis=(0, 2)) | (square_of[:, 0, 0] < chi2.isf(SILENT, n))
     out = []
     for r, covariance in enumerate(spread):
         covariance *= scale
@@ -150,16 +152,6 @@ def mode_estimates(fit: Fit, residuals: Residuals, omega: float) -> list[ModeEst
         of_shape, kept = (shapes[r], std, fit.L[r]), covariance if whole else None
         out.append(ModeEstimate(complex(lam) * omega, *stds, *of_shape, shape_covariance=kept))
     return out
-
-
-def _silent(phi: Complexes, covariance: Floats) -> Bools:
-    """Return which responses show nothing that noise would not make of all shapes, (responses,).
-
-    ``covariance`` is that of their components, real and imaginary.
-    """
-    c = np.stack([phi.real, phi.imag], axis=1).reshape(-1, phi.shape[1]).T[..., None]
-    size = c.swapaxes(1, 2) @ np.linalg.pinv(covariance, hermitian=True) @ c
-    return size[:, 0, 0] < chi2.isf(SILENT, c.shape[1])
 
 
 def _covariances(fit: Fit, residuals: Residuals) -> Floats:
@@ -213,8 +205,8 @@ def _force_products(
     Errors are independent at every line or, where the noise is known in time, at every sample;
     samples closer than lines of the band can tell apart are taken together.
     """
+    portion = max(CHUNK // max(weighted.shape[0] * len(E), 1), 1)
     if not task.force_noise:
-        portion = max(CHUNK // max(weighted.shape[0] * len(E), 1), 1)
         for start in range(0, len(task.s), portion):
             lines = slice(start, start + portion)
             yield E[:, lines].conj() * (np.sqrt(b / 2) * weighted[:, None, lines])
@@ -225,9 +217,7 @@ def _force_products(
     share = np.bincount(bins, noise.share)
     kept = share > 0
     times = np.bincount(bins, noise.share * noise.times)[kept] / share[kept]
-    share = share[kept]
-    for start in range(0, len(times), TOGETHER):
-        part = slice(start, start + TOGETHER)
-        error = noise.deviation[:, None] * np.exp(-1j * np.outer(f, times[part]))
-        error = error * np.sqrt(share[part] / 2)
-        yield (weighted[:, None] * E.conj()) @ error
+    error = noise.deviation[:, None] * np.exp(-1j * np.outer(f, times)) * np.sqrt(share[kept] / 2)
+    effects = weighted[:, None] * E.conj()
+    for start in range(0, len(times), portion):
+        yield effects @ error[:, start : start + portion]

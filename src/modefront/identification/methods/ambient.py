@@ -429,18 +429,14 @@ def _combined(
             rejected.append(Rejected(mode.frequency, mode.damping, why))
         else:
             modes.append(mode)
-    if count is not None and len(modes) > count:
-        order = sorted(modes, key=lambda mode: -mode.gain)
-        rejected += [
-            Rejected(mode.frequency, mode.damping, "weaker than the modes asked for")
-            for mode in order[count:]
-        ]
-        modes = order[:count]
+    modes.sort(key=lambda mode: -mode.gain)
+    weak, text = modes[count:] if count else [], "weaker than the modes asked for"
+    rejected += [Rejected(mode.frequency, mode.damping, text) for mode in weak]
     first, data = max(setups, key=lambda x: len(x.records.sensors)), _densities(setups, sensors)
     return Identification(
         sensors,
         band,
-        tuple(sorted(modes, key=lambda mode: mode.frequency)),
+        tuple(sorted(modes[:count], key=lambda mode: mode.frequency)),
         tuple(sorted(rejected, key=lambda pole: pole.frequency)),
         first.diagram,
         data,
