@@ -63,7 +63,7 @@ class Fit:
     ===========  =============================================================================
     attribute    meaning
     ===========  =============================================================================
-    phi          shapes (modes, responses)
+    phi, c       shapes (modes, responses), and Re and Im of them, (responses, 2 modes)
     terms        residual terms (powers, references, responses)
     cost         J, sum of squared weighted residuals; linear parameters are eliminated
     gradient     (alphas,) half the gradient of J
@@ -95,7 +95,7 @@ class Fit:
         c = c + lost
         rho = rho - (lost[None, :, None] @ TM)[:, :, 0]
         self.cost = cost - float(np.sum(lost * right))
-        self.phi: Complexes = (c[:, :n:2] + 1j * c[:, 1:n:2]).T
+        self.c, self.phi = c[:, :n], np.asarray((c[:, :n:2] + 1j * c[:, 1:n:2]).T, complex)
         self.terms = c[:, n:].reshape(len(c), L.shape[1], len(RESIDUALS)).transpose(2, 1, 0)
         row, coefficient = self.derivatives(len(E))
         direct = np.zeros((row.size, row.size))

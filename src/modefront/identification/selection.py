@@ -78,11 +78,10 @@ def _wald(fit: Fit, of: Floats, free: Bools) -> float:
     combinations B + Z A^-1 Z^T, B of the responses' own equations, A of the alphas.
     """
     seen: Bools = np.any(fit.task.weights, axis=(0, 2))
-    c = np.stack([fit.phi.real, fit.phi.imag], axis=1).reshape(of.shape[1], -1)
     block = of @ fit.inverse[:, : of.shape[1], : of.shape[1]] @ of.T
     block = np.broadcast_to(block, (len(seen), *block.shape[1:]))[seen]
     Z = of @ fit.Z[seen][:, : of.shape[1], free]
-    parts = np.concatenate([(of @ c).T[seen, :, None], Z], axis=2)
+    parts = np.concatenate([(fit.c[seen] @ of.T)[:, :, None], Z], axis=2)
     S = np.tensordot(parts, np.linalg.solve(block, parts), ((0, 1), (0, 1)))
     A = S[1:, 1:] + fit.information[np.ix_(free, free)]
     follows = S[0, 1:] @ la.lstsq(A, S[1:, 0])[0] if len(A) else 0.0

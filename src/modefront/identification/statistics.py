@@ -133,9 +133,8 @@ def mode_estimates(fit: Fit, residuals: Residuals, omega: float) -> list[ModeEst
             spread[r] += change @ change.T if whole else np.vecdot(change, change)
     scale = max(residuals.chi2, 1.0)
     # Some responses show nothing that noise would not make of all shapes.
-    c = np.stack([fit.phi.real, fit.phi.imag], axis=1).reshape(n, -1).T[..., None]
-    square_of = c.swapaxes(1, 2) @ np.linalg.pinv(scale * own, hermitian=True) @ c
-    gone = ~fit.task.weight.any(axis=(0, 2)) | (square_of[:, 0, 0] < chi2.isf(SILENT, n))
+    known = fit.c[:, None] @ np.linalg.pinv(scale * own, hermitian=True) @ fit.c[..., None]
+    gone = ~fit.task.weight.any(axis=(0, 2)) | (known[:, 0, 0] < chi2.isf(SILENT, n))
     out = []
     for r, covariance in enumerate(spread):
         covariance *= scale
