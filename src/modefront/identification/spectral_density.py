@@ -202,7 +202,7 @@ class Fit:
         determinant = 2 * np.log(np.einsum("kii->ki", L).real).sum(axis=1)
         determinant[lost] = np.inf
         self.N, self.D = root @ adjoint, half.conj().swapaxes(1, 2) @ half
-        self.Y: Complexes = np.eye(len(P)) - self.D @ P
+        self.Y = np.asarray(np.eye(len(P)) - self.D @ P, complex)
         self.C = P @ self.Y
         self.seen = (band.power.reshape(-1, n) @ self.hat).reshape(len(self.h), *self.hat.shape)
         self.own, self.weighted = self.hat.T @ self.seen, band.count[:, None, None] * self.D
@@ -395,9 +395,9 @@ def _with_background(x: Fit, share: float) -> tuple[Fit, float]:
     z, vector = la.eigh((Z + Z.T) / 2)
     z, Q = np.maximum(z, -MOST_OF_BACKGROUND), R @ U @ vector
     while share > SHORTEST:
-        after = Fit(band, replace(model, background=(Q * (1 + share * z)) @ Q.T))
-        if after.cost <= x.cost:
-            return after, min(2 * share, 1.0)
+        trial = Fit(band, replace(model, background=(Q * (1 + share * z)) @ Q.T))
+        if trial.cost <= x.cost:
+            return trial, min(2 * share, 1.0)
         share /= 2
     return x, 1.0
 
