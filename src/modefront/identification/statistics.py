@@ -146,10 +146,10 @@ def mode_estimates(fit: Fit, residuals: Residuals, omega: float) -> list[ModeEst
         df = np.array([lam.real, lam.imag]) / size
         two = np.array([df, np.array([-1 / size, 0.0]) + lam.real / size**2 * df])
         f_std, zeta_std = np.sqrt(np.einsum("ka,ab,kb->k", two, of_pole, two)).tolist()
-        stds = f_std * omega / (2 * np.pi), zeta_std
+        pole_of, hertz_std = complex(lam) * omega, f_std * omega / (2 * np.pi)
         std = np.sqrt(np.maximum(covariance.diagonal() if whole else covariance, 0.0))
-        of_shape, kept = (shapes[r], std, fit.L[r]), covariance if whole else None
-        out.append(ModeEstimate(complex(lam) * omega, *stds, *of_shape, shape_covariance=kept))
+        kept, L = covariance if whole else None, fit.L[r]
+        out.append(ModeEstimate(pole_of, hertz_std, zeta_std, shapes[r], std, L, kept))
     return out
 
 
