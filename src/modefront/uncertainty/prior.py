@@ -153,11 +153,14 @@ class Distance:
         return replace(found, J=J, dJ=dJ, H=H, residuals=residuals)
 
 
+@dataclass(eq=False)
 class Standardised:
     """Residuals, and last the square of z, as functions of standard normal z, by the priors."""
 
-    def __init__(self, problem: UpdatingProblem) -> None:
-        self.problem = problem
+    problem: UpdatingProblem
+
+    def __post_init__(self) -> None:
+        problem = self.problem
         self.objectives = (*problem.objectives, "prior")
         self.start = np.zeros(problem.start.size)
         self.lower, self.upper = self.start - FARTHEST, self.start + FARTHEST

@@ -468,7 +468,8 @@ def _of_structure(
     covariances = [mode.covariance[2:, 2:] for _, mode in having]
     shapes = [mode.phi for _, mode in having]
     phi, C, of_shapes = merged_shape(places, shapes, covariances, len(sensors))
-    merged = Local(*np.exp(means).tolist(), phi, covariance=la.block_diag(of_pole, C))
+    omega, zeta = np.exp(means).tolist()
+    merged = Local(omega, zeta, phi, covariance=la.block_diag(of_pole, C))
     return merged.estimate, float(misfit.sum() + of_shapes)
 
 
