@@ -99,6 +99,12 @@ def test_wrong_input_is_named(tmp_path: Path, arguments: list[str], message: str
         _invoke(tmp_path / "test-m0.toml", *arguments)
 
 
+def test_a_band_of_too_few_lines_of_an_ambient_test_is_named(tmp_path: Path) -> None:
+    write("ambient-test", tmp_path)
+    with pytest.raises(InputError, match=r"band: .*a band of 40 lines of set .* 2 to 2\.01 Hz"):
+        _invoke(tmp_path / "test.toml", "-o", tmp_path / "o.csv", "--band", 2, 2.01)
+
+
 def test_modes_are_chosen_by_hand(tmp_path: Path) -> None:
     write("hammer-test", tmp_path)
     test, output = tmp_path / "test-m0.toml", tmp_path / "o.csv"

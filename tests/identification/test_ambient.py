@@ -87,7 +87,7 @@ def test_cost_and_derivatives_are_those_of_the_whole_density(coherent: int) -> N
     model, band = _model(rng), _band(rng)
     R, precision = 0.3 * rng.standard_normal((SENSORS, coherent)), np.arange(1.0, coherent + 1)
     model = replace(model, coherent=R, middle=9.5, precision=precision)
-    fit = spectral_density.evaluate(band, model)
+    fit = spectral_density.Fit(band, model)
 
     def cost(model: Density) -> float:
         E, B = _density(band, model), model.background
@@ -111,7 +111,7 @@ def test_cost_and_derivatives_are_those_of_the_whole_density(coherent: int) -> N
     alone = 2 * (SENSORS - 1) + 4 + 9
     assert alone - 1e-6 < fit.freedom < alone + coherent * SENSORS + 1e-6
     known = replace(model, precision=1e9 * precision)
-    assert spectral_density.evaluate(band, known).freedom == pytest.approx(alone, abs=0.1)
+    assert spectral_density.Fit(band, known).freedom == pytest.approx(alone, abs=0.1)
 
 
 def test_every_fit_ends_at_a_minimum_of_shapes_poles_forces_and_background() -> None:
@@ -129,7 +129,7 @@ def test_every_fit_ends_at_a_minimum_of_shapes_poles_forces_and_background() -> 
     assert left @ np.linalg.solve(A, left) < 0.1
     for change in (0.99, 1.01):
         other = replace(fit.model, background=change * fit.model.background)
-        assert spectral_density.evaluate(band, other).cost > fit.cost - 0.01
+        assert spectral_density.Fit(band, other).cost > fit.cost - 0.01
 
 
 def test_a_background_that_starts_far_too_high_is_left_in_a_few_steps() -> None:
@@ -149,11 +149,11 @@ def test_bending_is_the_second_change_of_the_cost_where_forces_vanish() -> None:
     model, band = _model(rng), _band(rng)
     model = replace(model, root=0 * model.root)
     band = replace(band, power=band.power / 1e4)
-    fit, step = spectral_density.evaluate(band, model), 1e-4
+    fit, step = spectral_density.Fit(band, model), 1e-4
     first = 2 * SENSORS + 4
     for k, expected in enumerate(fit.bending.diagonal()):
         pair = [_moved(model, first + k, s).root for s in (step, -step)]
-        costs = [spectral_density.evaluate(band, replace(model, root=L)).cost for L in pair]
+        costs = [spectral_density.Fit(band, replace(model, root=L)).cost for L in pair]
         assert (sum(costs) - 2 * fit.cost) / step**2 == pytest.approx(expected, rel=1e-3)
 
 
@@ -359,11 +359,6 @@ def test_noise_alone_has_no_modes() -> None:
     rng = np.random.default_rng(5)
     records = Records("noise", ("a", "b", "c"), 10.0, rng.standard_normal((3, 4000)))
     assert identify([records]).modes == ()
-
-
-def test_a_record_that_is_too_short_is_an_error() -> None:
-    with pytest.raises(ValueError, match="expected 40 lines in the band, found 18"):
-        identify([Records("short", ("a",), 10.0, np.ones((1, 90)))], (1, 3))
 
 
 @pytest.mark.parametrize("place", [60.0, 60.37])

@@ -8,12 +8,7 @@ from simulation import THREE_STORY, THREE_STORY_DAMPING, accelerance, circular, 
 from modefront._typing import Complexes, Floats
 from modefront.data.responses import frequency_responses
 from modefront.identification.lscf import ARC, moments, poles
-from modefront.identification.modal_model import (
-    Fit,
-    evaluate,
-    maximise,
-    thinned,
-)
+from modefront.identification.modal_model import Fit, maximise, thinned
 from modefront.identification.problem import Problem, gram, primitives, problem
 from modefront.identification.statistics import correlated_gram, windowed_correlation
 
@@ -36,14 +31,14 @@ def _costs(fit: Fit, step: Floats) -> tuple[float, float]:
     """Return the cost a step of alpha away, there and back."""
     out = []
     for sign in (1, -1):
-        lam, L = fit.model.lam.copy(), fit.model.L.copy()
-        for k, r, v in fit.model.alphas:
+        lam, L = fit.lam.copy(), fit.L.copy()
+        for k, r, v in fit.alphas:
             z = sign * complex(*step[2 * k : 2 * k + 2])
             if v is None:
                 lam[r] += z
             else:
                 L[r] += z * v
-        out.append(evaluate(fit.task, lam, L, fit.model.pairs).cost)
+        out.append(Fit(fit.task, lam, L, fit.pairs).cost)
     return out[0], out[1]
 
 
@@ -53,7 +48,7 @@ def test_the_gradient_is_that_of_the_projected_cost(pairs: tuple[tuple[int, int]
     lam, L = _somewhere(omega)
     for pair in map(list, pairs):
         lam[pair] = lam[pair].mean()
-    fit = evaluate(task, lam, L, pairs)
+    fit = Fit(task, lam, L, pairs)
     assert len(fit.gradient) == (4 + 2 if pairs else 6 + 6)
     for k in range(len(fit.gradient)):
         h = 1e-6 * (abs(lam[k // 2]) if k < 6 else 1.0)
@@ -76,10 +71,10 @@ def test_means_of_residuals_have_nearly_the_maximum_of_all_lines() -> None:
     data = frequency_responses(f, H + noise)
     task, omega, _ = problem(data, np.full(H.shape, (1e-3 * np.abs(H).std()) ** 2))
     fit = maximise(task, *_somewhere(omega))
-    few = thinned(fit, fit.model.lam)
+    few = thinned(fit, fit.lam)
     assert 3 * len(few.s) < len(task.s)
-    again = maximise(few, 1.0005 * fit.model.lam, fit.model.L)
-    moved = again.model.lam - fit.model.lam
+    again = maximise(few, 1.0005 * fit.lam, fit.L)
+    moved = again.lam - fit.lam
     deviation = np.sqrt(fit.inverted(fit.information).diagonal()[:6] / 2)
     assert (np.abs(moved.view(float)) < 0.3 * deviation).all()
 
@@ -91,7 +86,7 @@ def test_exact_data_give_exact_modes() -> None:
     task, omega, size = problem(data, np.full(data.H.shape, 1e-18))
     fit = maximise(task, *_somewhere(omega))
     assert fit.converged
-    result = fit.model.lam * omega / (2 * np.pi)
+    result = fit.lam * omega / (2 * np.pi)
     assert np.abs(result) == pytest.approx(THREE_STORY, rel=1e-8)
     assert -result.real / np.abs(result) == pytest.approx(THREE_STORY_DAMPING, rel=1e-7)
     assert np.abs(fit.functions * size - data.H).max() < 1e-8 * np.abs(data.H).max()
@@ -104,7 +99,7 @@ def test_a_pole_on_the_imaginary_axis_does_not_hold_up_the_others() -> None:
     undamped = np.append(lam, 1.02j - 1e-12)
     fit = maximise(task, undamped, np.vstack([L, L[:1]]))
     assert fit.cost < alone.cost * (1 + 1e-6)
-    assert fit.model.lam[:3] == pytest.approx(alone.model.lam, rel=1e-3)
+    assert fit.lam[:3] == pytest.approx(alone.lam, rel=1e-3)
 
 
 @pytest.mark.parametrize("references", [[0], [0, 2]])

@@ -46,7 +46,7 @@ def test_repeated_modes_are_a_pair_with_deviations_from_their_plane() -> None:
         plane = shapes()[1:3]
         outside = basis - basis @ plane.T @ plane
         scores.append(outside / [first.shape_std, second.shape_std])
-        assert any("one of a pair" in flag for flag in first.evidence.flags)
+        assert any("one of a pair" in flag for flag in first.flags)
     assert 0.7 < np.std(scores) < 1.3
 
 

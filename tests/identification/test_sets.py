@@ -20,8 +20,6 @@ def _set(
     return SENSORS, [
         ModeEstimate(
             2 * np.pi * f * (1j * np.sqrt(1 - zeta**2) - zeta),
-            f,
-            zeta,
             0.001,
             0.001,
             real_shape(phi + 0j),
@@ -61,7 +59,7 @@ def test_shapes_choose_among_close_modes() -> None:
 def test_damping_chooses_among_close_modes_of_turned_shapes() -> None:
     plane = np.linalg.qr(np.random.default_rng(1).standard_normal((4, 2)))[0].T
     sets = [_set([5, 5], plane, (0.025, 0.006)), _set([5, 5], _turned(plane, 40), (0.006, 0.025))]
-    assert mode_groups(sets) == [{0: 0, 1: 1}, {0: 1, 1: 0}]
+    assert sorted(mode_groups(sets), key=lambda x: x[0]) == [{0: 0, 1: 1}, {0: 1, 1: 0}]
 
 
 @pytest.mark.parametrize(("std", "groups"), [(0.01, 2), (0.4, 1)])

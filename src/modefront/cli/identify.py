@@ -71,15 +71,15 @@ def _print_modes(screen: Screen, test: IdentifiedTest) -> None:
                 rows.append([name, str(r + 1), "not found", *[""] * 7])
                 continue
             mode = test.identified[k].modes[number]
-            of = mode.evidence
             cells = (
                 f"{modes.data.frequency[k, r]:.6g}",
                 f"{modes.data.frequency_std[k, r]:.2g}",
                 f"{100 * modes.data.damping[k, r]:.4g}",
                 f"{100 * modes.damping_std[k, r]:.2g}",
-                f"{of.gain:.1f}" if of.gain < 10 else f"{of.gain:.0f}",
-                *(f"{of.support:.0%}", f"{of.visibility:.0%}", f"{mode.shape.collinearity:.2f}"),
+                f"{mode.gain:.1f}" if mode.gain < 10 else f"{mode.gain:.0f}",
+                *(f"{mode.support:.0%}", f"{mode.visibility:.0%}"),
+                f"{mode.shape.collinearity:.2f}",
             )
-            rows.append([name, str(r + 1) + " !" * bool(of.flags), *cells])
+            rows.append([name, str(r + 1) + " !" * bool(mode.flags), *cells])
     columns = ["frequency Hz", "std", "damping %", "std", "evidence", "orders", "seen", "MPC"]
     screen.table("modes", ["set", "mode", *columns], rows, keys=2)

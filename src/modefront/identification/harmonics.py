@@ -85,12 +85,9 @@ def _likelihood(
     lines: Transforms, near: slice, model: Density
 ) -> tuple[float, Complexes, Complexes]:
     """Return the cost of lines, and R with E^-1 = R R^* and H L at each of them."""
-    omega, F = lines.omega[near], lines.F[:, near].T
-    half = model.lifted(omega, lines.order) @ model.root
-    moved = model.columns @ half
-    C = np.linalg.cholesky(moved @ moved.conj().mT + model.background)
-    root: Complexes = np.asarray(np.linalg.inv(C), complex).conj().mT
-    misfit = np.sum(np.abs(np.einsum("kji,kj->ki", root.conj(), F)) ** 2)
+    half, C = model.factors(lines.omega[near], lines.order)
+    root = np.asarray(np.linalg.inv(C), complex).conj().mT
+    misfit = np.sum(np.abs(np.einsum("kji,kj->ki", root.conj(), lines.F[:, near].T)) ** 2)
     determinant = 2 * np.log(np.einsum("kii->ki", C).real).sum(axis=1)
     return float(lines.share[near] @ determinant + misfit), root, half
 

@@ -72,6 +72,7 @@ def poles(
 ) -> tuple[Complexes, Complexes]:
     """Return the stable poles of one order and participation factors, (poles, references).
 
+    Near a pole, B A^-1 is a column times its factors, whose greatest is 1: a left null vector of A.
     Poles, in rad/s, are of z = exp(i rate (omega - shift)), of positive frequency, and are those
     without the ``decay`` in 1/s that an exponential window added to them. What decays by less than
     half of that is noise; others that come out unstable get the damping ratio `LEAST_DAMPING`.
@@ -86,7 +87,8 @@ def poles(
     # sum_m z^m A_m v = 0 with A_0 = I: a companion matrix in 1/z
     companion = np.zeros((p * n_in, p * n_in), complex)
     companion[n_in:, :-n_in] = np.eye((p - 1) * n_in)
-    companion[:n_in] = -np.hstack(list(alpha.reshape(p, n_in, n_in)))
+    A = alpha.reshape(p, n_in, n_in)
+    companion[:n_in] = -np.hstack(list(A))
     inverse = la.eigvals(companion)
     inverse = inverse[np.abs(inverse) > np.finfo(float).eps]
     middle = np.pi * ARC
@@ -95,20 +97,9 @@ def poles(
     good = (value.real < -decay / 2) & (value.imag > 0)
     if decay:
         value.real = np.minimum(value.real + decay, -LEAST_DAMPING * np.abs(value))
-    participation = _participation(alpha.reshape(p, n_in, n_in), 1 / inverse[good])
-    order = np.argsort(value[good].imag)
-    return value[good][order], participation[order]
-
-
-def _participation(A: Complexes, z: Complexes) -> Complexes:
-    """Return the left null vectors of A(z), (poles, references), greatest entry 1.
-
-    Near a pole, B A^-1 is a column times this row. ``A`` holds A_1 ... A_p; A_0 is I.
-    """
-    p, n_in = A.shape[:2]
-    if n_in == 1:
-        return np.ones((len(z), 1), complex)
-    total = np.eye(n_in) + np.einsum("km,mij->kij", z[:, None] ** np.arange(1, p + 1), A)
-    left: Complexes = np.linalg.svd(total)[0][:, :, -1].conj()
-    greatest = np.abs(left).argmax(axis=1)
-    return left / left[np.arange(len(left)), greatest][:, None]
+    kept = np.flatnonzero(good)[value[good].imag.argsort()]
+    powers = (1 / inverse[kept])[:, None] ** np.arange(1, p + 1)
+    total = np.eye(n_in) + np.einsum("km,mij->kij", powers, A)
+    left = np.linalg.svd(total)[0][:, :, -1].conj()
+    greatest = np.take_along_axis(left, np.abs(left).argmax(axis=1)[:, None], axis=1)
+    return value[kept], left / greatest

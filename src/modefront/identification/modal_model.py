@@ -30,13 +30,15 @@ Sources: Golub & Pereyra 1973, doi:10.1137/0710036; El-Kafafy, De Troyer, Peeter
 Syst. Signal Process. 37 (2013) 422-439, doi:10.1016/j.ymssp.2013.01.001.
 """
 
-from dataclasses import dataclass, replace
+from copy import copy
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
 import scipy.linalg as la
 
 from modefront._typing import Complexes, Floats, Ints
+from modefront.identification.noise import square
 from modefront.identification.problem import RESIDUALS, Problem, combined, gram, primitives
 from modefront.identification.scan import Scan, scan
 
@@ -49,20 +51,75 @@ MOST_EVALUATIONS = 40
 ROUNDING = 1e-13  # share of the squares of a column that may be rounding
 BEND = 1 / 8  # width of a block of lines over the distance of the nearest pole
 
+Pairs = tuple[tuple[int, int], ...]
 
-@dataclass(frozen=True)
-class ModalModel:
-    """Parameters of the model in the scale of a `Problem`."""
 
-    lam: Complexes  # (modes,) poles
-    L: Complexes  # (modes, references) participation factors
-    phi: Complexes  # (modes, responses)
-    residual: Floats  # (powers, references, responses)
-    # modes that have one and the same pole; their shapes are a basis of a plane
-    pairs: tuple[tuple[int, int], ...] = ()
+class Fit:
+    """A model with given poles and participation factors, and the best shapes for them.
 
-    def __len__(self) -> int:
-        return len(self.lam)
+    Its parameters are in the scale of the ``task``, the `Problem` that was fitted. ``pairs`` are
+    modes that have one and the same pole; their shapes are a basis of a plane.
+
+    ===========  =============================================================================
+    attribute    meaning
+    ===========  =============================================================================
+    phi, c       shapes (modes, responses), and Re and Im of them, (responses, 2 modes)
+    terms        residual terms (powers, references, responses)
+    cost         J, sum of squared weighted residuals; linear parameters are eliminated
+    gradient     (alphas,) half the gradient of J
+    information  (alphas, alphas) projected Gauss-Newton matrix A
+    inverse      (responses, linear, linear) inverse of G; one where the responses share their
+                 weights
+    Z            (responses, linear, alphas), G^-1 Phi^T D
+    size         (alphas,) squares of the columns of D; parts that Phi can make up are in them
+    evaluations  number of evaluations of the model
+    converged    whether the iteration met its tolerance
+    ===========  =============================================================================
+    """
+
+    def __init__(self, task: Problem, lam: Complexes, L: Complexes, pairs: Pairs = ()) -> None:
+        self.task, self.lam, self.L, self.pairs = task, lam, L, pairs
+        self.evaluations, self.converged = 1, False
+        E, T = primitives(task, lam), design(L)
+        M, n, first = gram(task, E), 2 * len(lam), T.shape[1]
+        TM = T.transpose(0, 2, 1)[:, None] @ M[..., :first, :]  # (references, responses, linear, Q)
+        G = (TM[..., :first] @ T[:, None]).sum(axis=0)
+        self.inverse = _inverse(G)
+        nothing = np.zeros((*task.H.shape[:2], 0))
+        c = _best(self.inverse, T, _project(task, E[:first], nothing)[0])
+        rho, cost = _project(task, E, np.einsum("jqa,ia->jiq", T, c))
+        # a second round takes back what the normal equations lost; it is small, so that its changes
+        # of rho and of the cost are exact to rounding
+        lost = _best(self.inverse, T, rho[..., :first])
+        right = (G @ lost[..., None])[..., 0]
+        c = c + lost
+        rho = rho - (lost[None, :, None] @ TM)[:, :, 0]
+        self.cost = cost - float(np.sum(lost * right))
+        self.c, self.phi = c[:, :n], np.asarray((c[:, :n:2] + 1j * c[:, 1:n:2]).T, complex)
+        self.terms = c[:, n:].reshape(len(c), L.shape[1], len(RESIDUALS)).transpose(2, 1, 0)
+        row, coefficient = self.derivatives(len(E))
+        direct = np.zeros((row.size, row.size))
+        for j, i in np.ndindex(M.shape[:2]):
+            of_ji = coefficient[j, i : i + 1] if M.shape[1] > 1 else coefficient[j]
+            flat = of_ji.reshape(len(of_ji), -1)
+            direct += (flat.T @ flat) * M[j, i][np.ix_(row.ravel(), row.ravel())]
+        direct = direct.reshape(*row.shape, *row.shape).sum(axis=(1, 3))
+        cross = np.zeros((c.shape[0], c.shape[1], len(row)))
+        for j, part in enumerate(TM):
+            for k in range(2):
+                cross += part[..., row[:, k]] * coefficient[j, :, None, :, k]
+        self.Z, self.size = self.inverse @ cross, direct.diagonal()
+        self.information = direct - np.tensordot(cross, self.Z, ((0, 1), (0, 1)))
+        self.gradient = -(rho[..., row] * coefficient).sum(axis=(0, 1, 3))
+
+    def of(self, task: Problem) -> "Fit":
+        """Return the same model beside other data, with all that was known of it but the cost."""
+        out = copy(self)
+        for name in ("functions", "residual", "found"):
+            vars(out).pop(name, None)
+        out.task = task
+        out.cost = float(np.sum(task.weight * square(out.residual)))
+        return out
 
     @cached_property
     def alphas(self) -> list[tuple[int, int, Complexes | None]]:
@@ -71,7 +128,7 @@ class ModalModel:
         Modes of a pair share the number of their pole. Directions are across the factors of a mode,
         or of both of a pair: what moves within them changes shapes, and not the functions.
         """
-        first = np.arange(len(self))
+        first = np.arange(len(self.lam))
         for r, s in self.pairs:
             first[s] = r
         pole = np.unique(first, return_inverse=True)[1].tolist()
@@ -83,28 +140,45 @@ class ModalModel:
             *((k, r, v) for k, (r, v) in enumerate(across, start)),
         ]
 
+    def derivatives(self, functions: int) -> tuple[Ints, Floats]:
+        """Return the columns of D in so many primitives, of which each has two.
 
-# 10 fields: a model, what was fitted, and the equations of linear and nonlinear parameters there.
-@dataclass(frozen=True)
-class Fit:
-    """A model with the cost and the curvature there; linear parameters are eliminated."""
+        They are the numbers of the primitives, (alphas, 2), and their coefficients, (references,
+        responses, alphas, 2).
+        """
+        count, n = len({k for k, _, _ in self.alphas}), len(self.lam)
+        row = np.zeros((count, 2), int)
+        value = np.zeros((self.L.shape[1], self.phi.shape[1], count), complex)
+        for k, r, v in self.alphas:
+            row[k] = np.arange(2) + 2 * r + (functions - 2 * n if v is None else 0)
+            value[..., k] += np.outer(self.L[r] if v is None else v, self.phi[r])
+        turned = np.stack([value, 1j * value], axis=-1).reshape(*value.shape[:2], -1)
+        return row.repeat(2, axis=0), np.stack([turned.real, turned.imag], axis=-1)
 
-    task: Problem  # what was fitted
-    model: ModalModel  # the parameters
-    cost: float  # J, sum of squared weighted residuals
-    gradient: Floats  # (alphas,) half the gradient of J
-    information: Floats  # (alphas, alphas) projected Gauss-Newton matrix A
-    # (responses, linear, linear) inverse of G; one where the responses share their weights
-    inverse: Floats
-    Z: Floats  # (responses, linear, alphas), G^-1 Phi^T D
-    size: Floats  # (alphas,) squares of the columns of D; parts that Phi can make up are in them
-    evaluations: int = 1  # number of evaluations of the model
-    converged: bool = False  # whether the iteration met its tolerance
+    def columns(self) -> tuple[Complexes, Floats, Floats]:
+        """Return the primitives, T, and X: columns of D without what Phi makes up.
+
+        X is (references, responses, primitives, alphas).
+        """
+        E, T = primitives(self.task, self.lam), design(self.L)
+        row, coefficient = self.derivatives(len(E))
+        X = np.zeros((*coefficient.shape[:2], len(E), len(row)))
+        X[:, :, : T.shape[1]] = -(T[:, None] @ self.Z)
+        for k in range(2):
+            X[:, :, row[:, k], np.arange(len(row))] += coefficient[..., k]
+        return E, T, X
+
+    def synthesised(self, task: Problem) -> Complexes:
+        """Return the functions of the model at the lines of a problem."""
+        E = primitives(task, self.lam, squares=False)
+        a = self.L.T[:, None, :] * self.phi.T[None]
+        modal = np.stack([a.real, a.imag], axis=-1).reshape(*a.shape[:2], -1)
+        return combined(np.concatenate([modal, self.terms.transpose(1, 2, 0)], axis=-1), E)
 
     @cached_property
     def functions(self) -> Complexes:
         """Functions of the model, (references, responses, lines)."""
-        return synthesise(self.task, self.model)
+        return self.synthesised(self.task)
 
     @cached_property
     def residual(self) -> Complexes:
@@ -117,8 +191,7 @@ class Fit:
         scale = 1 / np.sqrt(np.maximum(A.diagonal(), least))
         value, vector = np.linalg.eigh(A * np.outer(scale, scale))
         half = scale[:, None] * vector / np.sqrt(np.maximum(value, ROUNDING) + damping)
-        out: Floats = half @ half.T
-        return out
+        return half @ half.T
 
     @property
     def freedom(self) -> int:
@@ -134,62 +207,8 @@ class Fit:
     @cached_property
     def found(self) -> Scan:
         """What poles all over the band explain of the residuals."""
-        E = primitives(self.task, self.model.lam, squares=False)
-        T = design(self.model.L)
-        return scan(self.task, self.residual, self.misfit, E, T)
-
-
-def evaluate(
-    task: Problem,
-    lam: Complexes,
-    L: Complexes,
-    pairs: tuple[tuple[int, int], ...] = (),
-) -> Fit:
-    """Return the model with the best shapes for the given poles and participation factors."""
-    E = primitives(task, lam)
-    M = gram(task, E)
-    first = 2 * len(lam) + len(RESIDUALS)
-    T = design(L)
-    TM = T.transpose(0, 2, 1)[:, None] @ M[..., :first, :]  # (references, responses, linear, Q)
-    G = (TM[..., :first] @ T[:, None]).sum(axis=0)
-    inverse = _inverse(G)
-    nothing = np.zeros((*task.H.shape[:2], 0))
-    c = _best(inverse, T, _project(task, E[:first], nothing)[0])
-    rho, cost = _project(task, E, np.einsum("jqa,ia->jiq", T, c))
-    # a second round takes back what the normal equations lost; it is small, so that its changes of
-    # rho and of the cost are exact to rounding
-    lost = _best(inverse, T, rho[..., :first])
-    right = (G @ lost[..., None])[..., 0]
-    c = c + lost
-    rho = rho - (lost[None, :, None] @ TM)[:, :, 0]
-    n, powers = len(lam), len(RESIDUALS)
-    phi = (c[:, : 2 * n : 2] + 1j * c[:, 1 : 2 * n : 2]).T
-    residual = c[:, 2 * n :].reshape(len(c), L.shape[1], powers).transpose(2, 1, 0)
-    model = ModalModel(lam, L, phi, residual, pairs)
-    row, coefficient = derivatives(model, E.shape[0])
-    direct = np.zeros((row.size, row.size))
-    for j, i in np.ndindex(M.shape[:2]):
-        of_ji = coefficient[j, i : i + 1] if M.shape[1] > 1 else coefficient[j]
-        flat = of_ji.reshape(len(of_ji), -1)
-        direct += (flat.T @ flat) * M[j, i][np.ix_(row.ravel(), row.ravel())]
-    direct = direct.reshape(*row.shape, *row.shape).sum(axis=(1, 3))
-    cross = np.zeros((c.shape[0], c.shape[1], len(row)))
-    for j, part in enumerate(TM):
-        for k in range(2):
-            cross += part[..., row[:, k]] * coefficient[j, :, None, :, k]
-    Z = inverse @ cross
-    information = direct - np.tensordot(cross, Z, ((0, 1), (0, 1)))
-    slope = (rho[..., row] * coefficient).sum(axis=(0, 1, 3))
-    cost -= float(np.sum(lost * right))
-    return Fit(task, model, cost, -slope, information, inverse, Z, direct.diagonal())
-
-
-def synthesise(task: Problem, model: ModalModel) -> Complexes:
-    """Return the functions of a model, (references, responses, lines)."""
-    E = primitives(task, model.lam, squares=False)
-    a = model.L.T[:, None, :] * model.phi.T[None]
-    modal = np.stack([a.real, a.imag], axis=-1).reshape(*a.shape[:2], -1)
-    return combined(np.concatenate([modal, model.residual.transpose(1, 2, 0)], axis=-1), E)
+        E = primitives(self.task, self.lam, squares=False)
+        return scan(self.task, self.residual, self.misfit, E, design(self.L))
 
 
 def thinned(fit: Fit, lam: Complexes) -> Problem:
@@ -200,7 +219,7 @@ def thinned(fit: Fit, lam: Complexes) -> Problem:
     """
     task, first = fit.task, [0]
     f = task.s.imag
-    distance = np.abs(task.s - np.concatenate([fit.model.lam, lam, [0]])[:, None]).min(axis=0)
+    distance = np.abs(task.s - np.concatenate([fit.lam, lam, [0]])[:, None]).min(axis=0)
     beyond = np.searchsorted(f, f + BEND * distance).tolist()
     while first[-1] < len(f):
         first.append(max(beyond[first[-1]], first[-1] + 1))
@@ -212,15 +231,13 @@ def thinned(fit: Fit, lam: Complexes) -> Problem:
     mean = np.add.reduceat(task.weight * fit.residual, blocks, axis=-1)
     mean /= np.where(weight > 0, weight, np.inf)
     out = replace(task, s=s, weight=weight)
-    H = synthesise(out, fit.model) + mean
-    return replace(out, H=np.where(weight > 0, H, 0))
+    return replace(out, H=np.where(weight > 0, fit.synthesised(out) + mean, 0))
 
 
 def _best(inverse: Floats, T: Floats, rho: Floats) -> Floats:
     """Return the linear parameters, (responses, linear), from products with the primitives."""
     right = np.einsum("jqa,jiq->ia", T, rho)
-    out: Floats = (inverse @ right[..., None])[..., 0]
-    return out
+    return (inverse @ right[..., None])[..., 0]
 
 
 def maximise(
@@ -229,7 +246,7 @@ def maximise(
     L: Complexes,
     most: int = MOST_EVALUATIONS,
     tolerance: float = FINE,
-    pairs: tuple[tuple[int, int], ...] = (),
+    pairs: Pairs = (),
 ) -> Fit:
     """Return the maximum-likelihood fit from initial poles and participation factors.
 
@@ -237,21 +254,20 @@ def maximise(
     standard deviations of the parameters, is below ``tolerance``, and fails after ``most``
     evaluations. Modes of ``pairs`` keep one pole.
     """
-    fit = evaluate(task, lam, L / np.abs(L).max(axis=1, keepdims=True), pairs)
-    damping, evaluations = 0.0, 1
-    converged = not len(lam)
+    fit = Fit(task, lam, L / np.abs(L).max(axis=1, keepdims=True), pairs)
+    damping, evaluations, converged = 0.0, 1, not len(lam)
     while evaluations < most and not converged:
-        step = _step(fit, damping)
-        decrement = float(step @ fit.information @ step)
+        lam, L, decrement = _moved(fit, damping)
         noise = max(2 * fit.cost / max(task.count, 1), 1.0)
-        trial = evaluate(task, *_moved(fit.model, step), pairs)
+        trial = Fit(task, lam, L, pairs)
         evaluations += 1
         converged = 2 * decrement <= tolerance * noise
         if trial.cost <= fit.cost * (1 + 1e-14):
             fit, damping = trial, 0.0 if damping < 1e-6 else damping / 10
         else:
             damping = max(10 * damping, 1e-4)
-    return replace(fit, evaluations=evaluations, converged=converged)
+    fit.evaluations, fit.converged = evaluations, converged
+    return fit
 
 
 def _project(task: Problem, E: Complexes, coefficients: Floats) -> tuple[Floats, float]:
@@ -288,54 +304,19 @@ def design(L: Complexes) -> Floats:
     return T
 
 
-def derivatives(model: ModalModel, functions: int) -> tuple[Ints, Floats]:
-    """Return the columns of D in the primitives, of which each has two.
-
-    They are the numbers of the primitives, (alphas, 2), and their coefficients, (references,
-    responses, alphas, 2).
-    """
-    count, n = len({k for k, _, _ in model.alphas}), len(model)
-    row = np.zeros((count, 2), int)
-    value = np.zeros((model.L.shape[1], model.phi.shape[1], count), complex)
-    for k, r, v in model.alphas:
-        row[k] = np.arange(2) + 2 * r + (functions - 2 * n if v is None else 0)
-        value[..., k] += np.outer(model.L[r] if v is None else v, model.phi[r])
-    turned = np.stack([value, 1j * value], axis=-1).reshape(*value.shape[:2], -1)
-    return row.repeat(2, axis=0), np.stack([turned.real, turned.imag], axis=-1)
-
-
-def columns(fit: Fit) -> tuple[Complexes, Floats, Floats]:
-    """Return the primitives, T, and X: columns of D without what Phi makes up.
-
-    X is (references, responses, primitives, alphas).
-    """
-    E = primitives(fit.task, fit.model.lam)
-    T = design(fit.model.L)
-    row, coefficient = derivatives(fit.model, len(E))
-    X = np.zeros((*coefficient.shape[:2], len(E), len(row)))
-    X[:, :, : T.shape[1]] = -(T[:, None] @ fit.Z)
-    for k in range(2):
-        X[:, :, row[:, k], np.arange(len(row))] += coefficient[..., k]
-    return E, T, X
-
-
-def _step(fit: Fit, damping: float) -> Floats:
+def _moved(fit: Fit, damping: float) -> tuple[Complexes, Complexes, float]:
+    """Return poles and factors after a step, and its squared length in deviations, over 2."""
     step: Floats = -fit.inverted(fit.information, damping) @ fit.gradient
+    lam, L = fit.lam.copy(), fit.L.copy()
     # poles stay in the second quadrant, and none goes beyond its neighbourhood; each for itself,
     # as one that is drawn to the imaginary axis would hold up all others
-    for k, r, v in fit.model.alphas:
+    for k, r, v in fit.alphas:
+        own = step[2 * k : 2 * k + 2]
         if v is None:
-            lam = fit.model.lam[r]
-            room = np.array([-0.7 * lam.real, min(-10 * lam.real, 0.5 * lam.imag)])
-            step[2 * k : 2 * k + 2] = np.clip(step[2 * k : 2 * k + 2], -room, room)
-    return step
-
-
-def _moved(model: ModalModel, step: Floats) -> tuple[Complexes, Complexes]:
-    lam, L, step = model.lam.copy(), model.L.copy(), step.view(complex)
-    for k, r, v in model.alphas:
-        if v is None:
-            lam[r] += step[k]
+            pole = fit.lam[r]
+            room = np.array([-0.7 * pole.real, min(-10 * pole.real, 0.5 * pole.imag)])
+            own[:] = np.clip(own, -room, room)
+            lam[r] += complex(*own)
         else:
-            L[r] += step[k] * v
-    return lam, L
+            L[r] += complex(*own) * v
+    return lam, L, float(step @ fit.information @ step)

@@ -63,12 +63,12 @@ class IdentifiedTest(Shown):
     def warnings(self) -> list[str]:
         """What is to be looked at: in the modes, the files, and the fit of each data set."""
         modes = [
-            f"mode {r + 1} of set {name!r}: {'; '.join(each.modes[k].evidence.flags)}"
+            f"mode {r + 1} of set {name!r}: {'; '.join(each.modes[k].flags)}"
             for name, each, of_set in zip(
                 self.names, self.identified, self.modes.index, strict=True
             )
             for r, k in enumerate(of_set)
-            if k >= 0 and each.modes[k].evidence.flags
+            if k >= 0 and each.modes[k].flags
         ]
         spread = [
             f"mode {r}: the sets differ by more than their own standard deviations: "
@@ -134,8 +134,7 @@ class IdentifiedTest(Shown):
             for name, identification in zip(self.names, self.identified, strict=True)
         ]
         said = {"test": self.test.name, "warnings": self.warnings, "sets": sets}
-        out: dict[str, Any] = json.loads(json_of(said))
-        return out
+        return json.loads(json_of(said))
 
     def __repr__(self) -> str:
         """Return the modes, a line each, and the first warnings."""
@@ -277,7 +276,7 @@ def _ends(path: Path, test: ModalTest, band: tuple[float, float] | None) -> tupl
 def _warnings(identification: Identification) -> list[str]:
     """Return the warnings on one identification."""
     out = []
-    data, residuals = identification.functions.data, identification.functions.residuals
+    data, residuals = identification.data, identification.residuals
     if not identification.converged:
         out.append("the maximum of the likelihood was not reached within its tolerance")
     if residuals.chi2 > 1.5:
@@ -318,16 +317,16 @@ def _warnings(identification: Identification) -> list[str]:
 
 def _plain_set(identification: Identification) -> dict[str, Any]:
     """Return what was identified of one data set."""
-    functions, residuals = identification.functions, identification.functions.residuals
+    residuals = identification.residuals
     return {
-        "references": functions.data.references,
+        "references": identification.data.references,
         "responses": identification.responses,
         "band": identification.band,
         "chi2": residuals.chi2,
         "correlation_factor": residuals.widening,
         "force_noise": np.sqrt(residuals.force),
         "residual": residuals.share,
-        "residual_terms": functions.residual_terms,
+        "residual_terms": identification.residual_terms,
         "evaluations": identification.evaluations,
         "converged": identification.converged,
         "modes": [
@@ -340,12 +339,12 @@ def _plain_set(identification: Identification) -> dict[str, Any]:
                 "shape": mode.shape.complex_shape.view(float).reshape(-1, 2),
                 "real_shape_std": mode.shape_std,
                 "phase_collinearity": mode.shape.collinearity,
-                "loss": mode.shape.loss,
+                "loss": (1 - np.sqrt(mode.shape.collinearity)) / 2,  # of the imaginary part
                 "participation": mode.participation.view(float).reshape(-1, 2),
-                "evidence": mode.evidence.gain,
-                "support": mode.evidence.support,
-                "visibility": mode.evidence.visibility,
-                "flags": mode.evidence.flags,
+                "evidence": mode.gain,
+                "support": mode.support,
+                "visibility": mode.visibility,
+                "flags": mode.flags,
             }
             for mode in identification.modes
         ],

@@ -53,8 +53,7 @@ def fitted_variance(raw: Floats, H: Complexes) -> Floats:
     blocks = np.linspace(0, lines, min(lines, MOST_BLOCKS) + 1).astype(int)[:-1]
 
     def block(values: Floats) -> Floats:
-        out: Floats = np.add.reduceat(values, blocks, axis=-1)
-        return out
+        return np.add.reduceat(values, blocks, axis=-1)
 
     count = block(known.astype(float))
     share = 1 / np.maximum(count, 1)

@@ -96,5 +96,4 @@ def gram(task: Problem, E: Complexes) -> Floats:
 
 def combined(coefficients: Floats, E: Complexes) -> Complexes:
     """Return real combinations of the primitives; real arithmetic takes half the time."""
-    out: Complexes = (coefficients @ E.view(float)).view(complex)
-    return out
+    return (coefficients @ E.view(float)).view(complex)

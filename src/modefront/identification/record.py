@@ -14,10 +14,22 @@ MOST_COVARIED = 200
 """Responses of which covariances of shapes are kept: a file of 40 modes then has 25 MB."""
 
 
+# 11 fields: what a mode is, and what speaks for it.
 @dataclass(frozen=True)
-class Evidence:
-    """What speaks for a mode, and what to look at."""
+class ModeEstimate:
+    """One mode with its standard deviations, in physical units."""
 
+    pole: complex  # rad/s
+    frequency_std: float  # frequency_std, damping_std: standard deviations, Hz and ratio
+    damping_std: float
+    shape: RealShape  # the complex shape and the real one
+    # (responses,) standard deviations of the real shape of unit norm; NaN where the response was
+    # not measured, or shows nothing but noise of any mode
+    shape_std: Floats
+    # (references,) factors that go with the complex shape as given, before rotation
+    participation: Complexes
+    # (responses, responses) of the real shape, None for more than `MOST_COVARIED`
+    shape_covariance: Floats | None = None
     # how much better the fit is than that without the mode, 2 Delta J over the noise, over the
     # least that a mode needs
     gain: float = np.nan
@@ -27,25 +39,15 @@ class Evidence:
     visibility: float = np.nan
     flags: tuple[str, ...] = ()  # reasons to look at it
 
+    @property
+    def frequency(self) -> float:
+        """Natural frequency in Hz."""
+        return abs(self.pole) / (2 * np.pi)
 
-@dataclass(frozen=True)
-class ModeEstimate:
-    """One mode with its standard deviations, in physical units."""
-
-    pole: complex  # rad/s
-    frequency: float  # frequency, damping: Hz, ratio
-    damping: float
-    frequency_std: float  # frequency_std, damping_std: their standard deviations
-    damping_std: float
-    shape: RealShape  # the complex shape and the real one
-    # (responses,) standard deviations of the real shape of unit norm; NaN where the response was
-    # not measured, or shows nothing but noise of any mode
-    shape_std: Floats
-    # (references,) factors that go with the complex shape as given, before rotation
-    participation: Complexes
-    evidence: Evidence = Evidence()  # what speaks for it
-    # (responses, responses) of the real shape, None for more than `MOST_COVARIED`
-    shape_covariance: Floats | None = None
+    @property
+    def damping(self) -> float:
+        """Damping ratio."""
+        return -self.pole.real / abs(self.pole)
 
 
 @dataclass(frozen=True)
@@ -75,16 +77,7 @@ class Residuals:
         return float(1 + 2 * self.correlation[1:].real.sum())
 
 
-@dataclass(frozen=True)
-class FittedFunctions:
-    """Measured functions beside those of the modal model."""
-
-    data: FrequencyResponses  # the functions within the band
-    synthesised: Complexes  # functions of the model, of the shape of ``data.H``
-    residuals: Residuals  # what the residuals say
-    residual_terms: int  # number of residual terms on either side of the band
-
-
+# 11 fields: modes, what was measured, and how it was fitted.
 @dataclass(frozen=True)
 class Identification:
     """Modes of one data set."""
@@ -94,9 +87,12 @@ class Identification:
     modes: tuple[ModeEstimate, ...]  # accepted modes by frequency
     rejected: tuple[Rejected, ...]  # what was found besides, and why it is no mode
     diagram: StabilisationDiagram  # poles of all orders
-    functions: FittedFunctions  # measured and fitted functions
-    evaluations: int  # number of evaluations of the model in the last fit
-    converged: bool  # whether it met its tolerance
+    data: FrequencyResponses  # the functions within the band
+    synthesised: Complexes  # functions of the modal model, of the shape of ``data.H``
+    residuals: Residuals  # what the residuals say
+    residual_terms: int = 0  # number of residual terms on either side of the band
+    evaluations: int = 0  # number of evaluations of the model in the last fit
+    converged: bool = True  # whether it met its tolerance
 
     @property
     def pairs(self) -> tuple[tuple[int, int], ...]:

@@ -36,8 +36,7 @@ differences between the weights of responses are as large."""
 
 def alike(pole: complex, others: Complexes) -> Floats:
     """Return the squared correlation of a pole's function with those of others."""
-    out: Floats = 4 * pole.real * others.real / np.abs(pole + others.conj()) ** 2
-    return out
+    return 4 * pole.real * others.real / np.abs(pole + others.conj()) ** 2
 
 
 @dataclass(frozen=True)
@@ -150,5 +149,4 @@ def _root(G: Floats) -> Floats:
     scale = 1 / np.sqrt(np.maximum(G.diagonal(), TINY))
     value, vector = np.linalg.eigh(G * np.outer(scale, scale))
     kept = value > ROUNDING * value.max(initial=0.0)
-    out: Floats = scale[:, None] * vector[:, kept] / np.sqrt(value[kept])
-    return out
+    return scale[:, None] * vector[:, kept] / np.sqrt(value[kept])

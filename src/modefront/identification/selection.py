@@ -6,23 +6,13 @@ noise does, one is added, until nothing stands out. Backwards, :math:`\Delta J` 
 Wald statistic of its shape, or what the fit without it loses.
 """
 
-from dataclasses import replace
-
 import numpy as np
 import scipy.linalg as la
 from scipy.special import gammaln
 from scipy.stats import chi2
 
 from modefront._typing import Bools, Complexes, Floats
-from modefront.identification.modal_model import (
-    COARSE,
-    Fit,
-    evaluate,
-    maximise,
-    synthesise,
-    thinned,
-)
-from modefront.identification.noise import square
+from modefront.identification.modal_model import COARSE, Fit, maximise, thinned
 from modefront.identification.problem import Problem
 from modefront.identification.scan import alike
 from modefront.identification.shapes import plane_basis
@@ -76,9 +66,9 @@ def gains(fit: Fit) -> Floats:
     It is the Wald statistic of a shape whose poles are held, while all else may follow: with the
     covariance B + Z A^-1 Z^T, B of the shape's own equations, A of all other alphas.
     """
-    owner, unit = np.repeat([r for _, r, _ in fit.model.alphas], 2), np.eye(2 * len(fit.model))
-    out = [_wald(fit, unit[2 * r : 2 * r + 2], owner != r) for r in range(len(fit.model))]
-    return np.array(out) / fit.found.noise_of(fit.model.lam)
+    owner, unit = np.repeat([r for _, r, _ in fit.alphas], 2), np.eye(2 * len(fit.lam))
+    out = [_wald(fit, unit[2 * r : 2 * r + 2], owner != r) for r in range(len(fit.lam))]
+    return np.array(out) / fit.found.noise_of(fit.lam)
 
 
 def _wald(fit: Fit, of: Floats, free: Bools) -> float:
@@ -88,11 +78,10 @@ def _wald(fit: Fit, of: Floats, free: Bools) -> float:
     combinations B + Z A^-1 Z^T, B of the responses' own equations, A of the alphas.
     """
     seen: Bools = np.any(fit.task.weights, axis=(0, 2))
-    c = np.stack([fit.model.phi.real, fit.model.phi.imag], axis=1).reshape(of.shape[1], -1)
     block = of @ fit.inverse[:, : of.shape[1], : of.shape[1]] @ of.T
     block = np.broadcast_to(block, (len(seen), *block.shape[1:]))[seen]
     Z = of @ fit.Z[seen][:, : of.shape[1], free]
-    parts = np.concatenate([(of @ c).T[seen, :, None], Z], axis=2)
+    parts = np.concatenate([(fit.c[seen] @ of.T)[:, :, None], Z], axis=2)
     S = np.tensordot(parts, np.linalg.solve(block, parts), ((0, 1), (0, 1)))
     A = S[1:, 1:] + fit.information[np.ix_(free, free)]
     follows = S[0, 1:] @ la.lstsq(A, S[1:, 0])[0] if len(A) else 0.0
@@ -111,18 +100,15 @@ def refit(fit: Fit, lam: Complexes, L: Complexes, fine: bool = False) -> Fit:
     while True:
         fit = maximise(few, lam, L, MOST_EVALUATIONS, COARSE)
         if fine:
-            fit = maximise(task, fit.model.lam, fit.model.L)
-        lam, L = fit.model.lam, fit.model.L
+            fit = maximise(task, fit.lam, fit.L)
+        lam, L = fit.lam, fit.L
         over = -lam.real > OVERDAMPED * np.abs(lam)
         unlike = fit.information.diagonal() / np.maximum(fit.size, TINY)
         over |= unlike[: 2 * len(lam)].reshape(-1, 2).min(axis=1, initial=1.0) < LEAST_UNLIKE
         if not over.any():
             break
         lam, L = lam[~over], L[~over]
-    if fit.task is task:
-        return fit
-    r = task.H - synthesise(task, fit.model)
-    return replace(fit, task=task, cost=float(np.sum(task.weight * square(r))))
+    return fit if fit.task is task else fit.of(task)
 
 
 def backward(fit: Fit, count: int | None = None) -> tuple[Fit, Floats]:
@@ -135,8 +121,8 @@ def backward(fit: Fit, count: int | None = None) -> tuple[Fit, Floats]:
     explain as it does a pair. Of doubles, the weakest goes first.
     """
     gain, together = gains(fit), True
-    while len(fit.model):
-        lam, least = fit.model.lam, needed(fit.task)
+    while len(fit.lam):
+        lam, least = fit.lam, needed(fit.task)
         if count is not None:
             least = np.sort(gain)[::-1][count - 1] if count < len(gain) else -np.inf
         gone = np.zeros(len(lam), bool)
@@ -144,15 +130,15 @@ def backward(fit: Fit, count: int | None = None) -> tuple[Fit, Floats]:
             gone[r] = (alike(lam[r], lam[gone]) < ALONE).all()
         needless = gone.any()
         if not needless:
-            double = doubles(lam, fit.model.phi, gain, fit)
-            for pair in paired(fit).model.pairs if double.any() else ():
+            double = doubles(lam, fit.phi, gain, fit)
+            for pair in paired(fit).pairs if double.any() else ():
                 double[list(pair)] = False
             if not double.any():
                 break
             gone = double & (gain == gain[double].min())
         elif not together:
             gone = gain == gain.min()
-        trial = refit(fit, lam[~gone], fit.model.L[~gone])
+        trial = refit(fit, lam[~gone], fit.L[~gone])
         lost = 2 * (trial.cost - fit.cost) / fit.found.noise_of(lam[gone]).min()
         together = lost - np.sort(gain[gone])[:-1].sum() < least
         if together or not needless or count is not None:
@@ -171,9 +157,9 @@ def grow(fit: Fit, count: int | None = None) -> Fit:
     """
     blocked: Complexes = np.zeros(0, complex)
     for _ in range(MOST_ROUNDS):
-        task, model, lam, gain = fit.task, fit.model, fit.found.lam, fit.found.gain
+        task, lam, gain = fit.task, fit.found.lam, fit.found.gain
         least = needed(task) if count is None else 0.0
-        most = len(lam) if count is None else count - len(model)
+        most = len(lam) if count is None else count - len(fit.lam)
         new: list[int] = []
         for c in gain.argsort()[::-1]:
             if gain[c] < least or len(new) >= most:
@@ -183,10 +169,10 @@ def grow(fit: Fit, count: int | None = None) -> Fit:
                 new.append(int(c))
         if not new:
             break
-        L = np.vstack([model.L, fit.found.L[new]])
-        trial, _ = backward(refit(fit, np.append(model.lam, lam[new]), L), count)
+        L = np.vstack([fit.L, fit.found.L[new]])
+        trial, _ = backward(refit(fit, np.append(fit.lam, lam[new]), L), count)
         gained = 2 * (fit.cost - trial.cost) / np.median(fit.found.noise[new])
-        if len(trial.model) > len(model) or gained > needed(task):
+        if len(trial.lam) > len(fit.lam) or gained > needed(task):
             fit, blocked = trial, blocked[:0]
         else:
             blocked = np.append(blocked, lam[new])
@@ -199,7 +185,7 @@ def paired(fit: Fit) -> Fit:
     The closest are tried first that are not clearly apart by their deviations. Real parts of the
     shapes of a pair are orthonormal.
     """
-    task, lam, pairs = fit.task, fit.model.lam, fit.model.pairs
+    task, lam, pairs = fit.task, fit.lam, fit.pairs
     apart = np.abs(lam[:, None] - lam) / np.minimum.outer(-lam.real, -lam.real)
     close = np.argwhere(np.triu(apart < 1, 1)) if len(task.H) > 1 else np.zeros((0, 2), int)
     C, noise = fit.inverted(fit.information) / 2, fit.found.noise_of(lam)
@@ -211,21 +197,17 @@ def paired(fit: Fit) -> Fit:
         both[[0, 1], [2 * r, 2 * r + 1]], both[[0, 1], [2 * s, 2 * s + 1]] = 1.0, -1.0
         if difference @ np.linalg.solve(both @ C @ both.T, difference) > CLEARLY * noise[r]:
             continue
-        model = fit.model
-        start = model.lam.copy()
+        start = fit.lam.copy()
         start[[r, s]] = (lam[r] + lam[s]) / 2
-        trial = maximise(task, start, model.L, pairs=(*pairs, (r, s)))
+        trial = maximise(task, start, fit.L, pairs=(*pairs, (r, s)))
         lost = 2 * (trial.cost - fit.cost) / noise[r]
         if lost < chi2.isf(APART, PAIR_FREEDOM):
-            L = trial.model.L.copy()
-            for pair in map(list, trial.model.pairs):
-                L[pair] = np.linalg.solve(plane_basis(trial.model.phi[pair]).T, L[pair])
-            pairs = trial.model.pairs
-            fit = replace(
-                evaluate(task, trial.model.lam, L, pairs),
-                evaluations=trial.evaluations,
-                converged=trial.converged,
-            )
+            L = trial.L.copy()
+            for pair in map(list, trial.pairs):
+                L[pair] = np.linalg.solve(plane_basis(trial.phi[pair]).T, L[pair])
+            pairs = trial.pairs
+            fit = Fit(task, trial.lam, L, pairs)
+            fit.evaluations, fit.converged = trial.evaluations, trial.converged
     return fit
 
 
@@ -236,7 +218,7 @@ def seeded(fit: Fit, omega: Floats) -> tuple[Complexes, Complexes]:
     residuals, as far as it is not that of another pole.
     """
     found = fit.found
-    out, L = fit.model.lam, fit.model.L
+    out, L = fit.lam, fit.L
     for each in omega:
         if (np.abs(np.abs(out) - each) < -out.real).any():
             continue
@@ -266,11 +248,11 @@ def doubles(poles: Complexes, shapes: Complexes, strength: Floats, fit: Fit | No
 
 def _differ(fit: Fit, r: int, s: int) -> bool:
     """Return whether the shape of a mode is more than a multiple of that of another one."""
-    phi = fit.model.phi[:, np.any(fit.task.weights, axis=(0, 2))]
+    phi = fit.phi[:, np.any(fit.task.weights, axis=(0, 2))]
     factor = np.vdot(phi[s], phi[r]) / np.vdot(phi[s], phi[s])
     of = np.zeros((2, 2 * len(phi)))
     of[:, 2 * r : 2 * r + 2] = np.eye(2)
     of[:, 2 * s : 2 * s + 2] = [[-factor.real, factor.imag], [-factor.imag, -factor.real]]
-    freedom, noise = 2 * phi.shape[1] - 2, fit.found.noise_of(fit.model.lam[[r]])[0]
+    freedom, noise = 2 * phi.shape[1] - 2, fit.found.noise_of(fit.lam[[r]])[0]
     statistic = _wald(fit, of, np.ones(len(fit.gradient), bool)) / noise
     return bool(freedom and statistic > chi2.isf(APART, freedom))

@@ -49,14 +49,14 @@ def combine(sets: Sequence[str], identifications: Sequence[Identification]) -> C
     groups = mode_groups([(each.responses, each.modes) for each in identifications])
     K, R, S = len(identifications), len(groups), len(sensors)
     index = tuple(tuple(group.get(k, -1) for group in groups) for k in range(K))
-    f, z, f_std, z_std = (np.full((K, R), np.nan) for _ in range(4))
+    pole, pole_std = np.full((2, 2, K, R), np.nan)  # frequencies, then damping ratios
     phi, phi_std = np.full((K, R, S), np.nan), np.full((K, R, S), np.nan)
     C = np.full((K, R, S, S), np.nan) if S <= MOST_COVARIED else None
     for r, group in enumerate(groups):
         for k, number in group.items():
             mode = identifications[k].modes[number]
-            f[k, r], f_std[k, r] = mode.frequency, mode.frequency_std
-            z[k, r], z_std[k, r] = mode.damping, mode.damping_std
+            pole[:, k, r] = mode.frequency, mode.damping
+            pole_std[:, k, r] = mode.frequency_std, mode.damping_std
             places = [sensors.index(name) for name in identifications[k].responses]
             phi_std[k, r, places] = mode.shape_std
             phi[k, r, places] = np.where(np.isfinite(mode.shape_std), mode.shape.shape, np.nan)
@@ -70,16 +70,16 @@ def combine(sets: Sequence[str], identifications: Sequence[Identification]) -> C
                 paired |= {r: s, s: r}
     spread = np.zeros((R, 2))
     for r in range(R):
-        spread[r] = between(f[:, r], f_std[:, r]), between(z[:, r], z_std[:, r])
+        spread[r] = [between(*x) for x in zip(pole[..., r], pole_std[..., r], strict=True)]
         if r in paired:
             continue
         before = phi_std[:, r] ** 2
         phi[:, r], phi_std[:, r] = _shapes(phi[:, r], phi_std[:, r])
         if C is not None:
             C[:, r] += (phi_std[:, r] ** 2 - before)[:, None] * np.eye(S)
-    f_std, z_std = np.hypot(f_std, spread[:, 0]), np.hypot(z_std, spread[:, 1])
+    f_std, z_std = np.hypot(pole_std, spread.T[:, None])
     pairs = tuple((r + 1, s + 1) for r, s in paired.items() if r < s)
-    parts = (f, z, phi, f_std, phi_std, pairs, C)
+    parts = (*pole, phi, f_std, phi_std, pairs, C)
     data = ModalData(tuple(sets), tuple(range(1, R + 1)), sensors, *parts)
     if C is not None:
         faulty = [[data.covariance_fault(k, r) is not None for r in range(R)] for k in range(K)]

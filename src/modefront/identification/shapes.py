@@ -17,7 +17,7 @@ class RealShape:
 
     complex_shape: Complexes  # (responses,) rotated, its real part of unit norm
     shape: Floats  # (responses,) its real part
-    collinearity: float  # MPC
+    collinearity: float  # MPC, modal phase collinearity, from 0 to 1
     norm: float  # that of the real part before it was scaled
     # the rotation, exp(-i theta), with the sign that makes the greatest component positive
     turn: complex
@@ -25,25 +25,13 @@ class RealShape:
     # itself, and the other one of a pair
     plane: Floats
 
-    @property
-    def loss(self) -> float:
-        """Share of the squared norm that the imaginary part had."""
-        return float((1 - np.sqrt(self.collinearity)) / 2)
-
     def differential(self, dphi: Complexes) -> Floats:
         """Return du for changes of the shape that was given, both (responses, changes)."""
         u, y = self.shape, self.complex_shape.imag
         change = self.turn * dphi / self.norm
         dtheta = (u @ change.imag + y @ change.real) / max(1 - float(y @ y), TINY)
         dx = change.real + np.outer(y, dtheta)
-        out: Floats = dx - self.plane @ (self.plane.T @ dx)
-        return out
-
-
-def phase_collinearity(phi: Complexes) -> float:
-    """Return the modal phase collinearity of a shape, from 0 to 1."""
-    power = max(float(np.sum(np.abs(phi) ** 2)), TINY)
-    return float(min((np.abs(np.sum(phi**2)) / power) ** 2, 1.0))
+        return dx - self.plane @ (self.plane.T @ dx)
 
 
 def real_shape(phi: Complexes) -> RealShape:
@@ -59,10 +47,10 @@ def real_shapes(phi: Complexes) -> list[RealShape]:
         turn, psi = -turn, -psi
     norm = np.maximum(np.linalg.norm(psi.real, axis=1), TINY)
     psi = psi / norm[:, None]
-    return [
-        RealShape(each, each.real, phase_collinearity(each), size, complex(turn), psi.real.T)
-        for each, size in zip(psi, norm.tolist(), strict=True)
-    ]
+    power = np.maximum(np.sum(np.abs(psi) ** 2, axis=1), TINY)
+    mpc = np.minimum((np.abs(np.sum(psi**2, axis=1)) / power) ** 2, 1.0)
+    each = zip(psi, mpc.tolist(), norm.tolist(), strict=True)
+    return [RealShape(x, x.real, share, size, complex(turn), psi.real.T) for x, share, size in each]
 
 
 def plane_basis(phi: Complexes) -> Complexes:

@@ -74,18 +74,12 @@ class Band:
     def total(self) -> Floats:
         """Sum of the real part of F F^* over the lines, and of the background a priori."""
         prior = (PRIOR + len(self.floor)) * np.diag(self.floor)
-        out: Floats = np.tensordot(self.count, self.power.real, 1) + prior
-        return out
+        return np.tensordot(self.count, self.power.real, 1) + prior
 
     @property
     def weight(self) -> float:
         """Number of lines, and of those that the prior is worth."""
         return float(self.count.sum() + PRIOR + len(self.floor))
-
-    @property
-    def reach(self) -> float:
-        """Half the width over the middle."""
-        return float(np.ptp(self.omega) / (self.omega[0] + self.omega[-1]))
 
 
 @dataclass(frozen=True)
@@ -123,8 +117,7 @@ class Density:
     @property
     def force(self) -> Complexes:
         """S, (modes, modes)."""
-        out: Complexes = self.root @ self.root.conj().T
-        return out
+        return self.root @ self.root.conj().T
 
     def response(self, omega: Floats, order: int) -> Complexes:
         """Return h at circular frequencies, (modes, lines)."""
@@ -143,14 +136,23 @@ class Density:
         parts = [of_modes[:, : self.free], *smooth, of_modes[:, self.free :]]
         return np.asarray(np.concatenate(parts, axis=1), complex)
 
+    def factors(self, omega: Floats, order: int) -> tuple[Complexes, Complexes]:
+        """Return H L and the lower triangular root of E at circular frequencies."""
+        half = self.lifted(omega, order) @ self.root
+        moved = self.columns @ half
+        E = moved @ moved.conj().swapaxes(1, 2) + self.background
+        return half, np.asarray(np.linalg.cholesky(E), complex)
+
     def with_coherent(self, band: Band) -> "Density":
         """Return the same model with R = 0 as parameters, in the middle of a band.
 
         A priori, either term is at the ends of the band `COHERENT` of the mode's own peak.
         """
-        n, size = len(self.phi), COHERENT / band.reach ** np.arange(TERMS)
+        first, last = band.omega[[0, -1]]
+        reach = (last - first) / (first + last)  # half the width over the middle
+        n, size = len(self.phi), COHERENT / reach ** np.arange(TERMS)
         precision: Floats = n / size.repeat(self.free) ** 2
-        R, middle = np.zeros((n, len(precision))), float(band.omega[[0, -1]].mean())
+        R, middle = np.zeros((n, len(precision))), float(first + last) / 2
         return replace(self, coherent=R, middle=middle, precision=precision)
 
     def without(self, mode: int, band: Band) -> "Density":
@@ -173,21 +175,149 @@ class Density:
         )
 
 
-@dataclass(frozen=True)
 class Fit:
     """A model beside the data: the cost and its derivatives by the parameters.
 
     The parameters are the shapes (mode by mode), R in the same way, ln omega and ln zeta of the
-    free modes, and the real and imaginary part of L (row by row, the lower triangle). ``bending``
-    is what the second derivatives of S by L add to those of the cost.
+    free modes, and the real and imaginary part of L (row by row, the lower triangle).
+
+    Matrices of the module's text are those of all blocks, (blocks, columns, columns). ``h`` is H,
+    ``seen`` is F F^* hat of the data, (blocks, sensors, columns), ``own`` is hat^T F F^* hat, and
+    ``weighted`` is D times the number of lines.
     """
 
-    model: Density
-    cost: float
-    gradient: Floats
-    information: Floats
-    bending: Floats
-    converged: bool = False
+    def __init__(self, band: Band, model: Density) -> None:
+        self.band, self.model, self.converged = band, model, False
+        n, B, psi = len(model.phi), model.background, model.columns
+        inverse, self.h = np.linalg.inv(B), model.lifted(band.omega, band.order)
+        self.hat = inverse @ psi
+        P, root = psi.T @ self.hat, self.h @ model.root
+        adjoint = root.conj().swapaxes(1, 2)
+        A = adjoint @ P @ root
+        # Of forces that cancel each other, rounding is all that is known of the determinant.
+        lost = ~(np.finfo(float).eps * np.einsum("kii->k", A).real < TOLERANCE)
+        A[lost] = 0.0
+        L = np.linalg.cholesky(A + np.eye(A.shape[1]))
+        half = np.linalg.solve(L, adjoint)
+        determinant = 2 * np.log(np.einsum("kii->ki", L).real).sum(axis=1)
+        determinant[lost] = np.inf
+        self.N, self.D = root @ adjoint, half.conj().swapaxes(1, 2) @ half
+        self.Y = np.asarray(np.eye(len(P)) - self.D @ P, complex)
+        self.C = P @ self.Y
+        self.seen = (band.power.reshape(-1, n) @ self.hat).reshape(len(self.h), *self.hat.shape)
+        self.own, self.weighted = self.hat.T @ self.seen, band.count[:, None, None] * self.D
+        cost = band.weight * np.linalg.slogdet(B)[1] + np.vdot(inverse, band.total)
+        cost += band.count @ determinant
+        cost -= np.vdot(self.weighted.conj(), self.own.swapaxes(1, 2)).real
+        self.cost = float(cost + np.sum(model.precision * model.coherent**2) / 2)
+
+    @cached_property
+    def both(self) -> Complexes:
+        """Sum of D hat^T F F^* over the lines, of w F^* as expected, (columns, sensors)."""
+        return np.tensordot(self.weighted, self.seen.conj(), ((0, 2), (0, 2)))
+
+    @cached_property
+    def second(self) -> Complexes:
+        """Sum of w w^* as expected, (columns, columns); w are the responses to the forces."""
+        return (self.weighted + self.weighted @ self.own @ self.D).sum(axis=0)
+
+    @cached_property
+    def of_poles(self) -> Complexes:
+        """Changes of ln h by ln omega and by ln zeta of free modes, (blocks, 2 free)."""
+        model, order = self.model, self.band.order
+        zeta, x = model.zeta[: model.free], self.band.omega[:, None] / model.omega[: model.free]
+        inner = 1 - x**2 + 2j * zeta * x
+        return np.hstack([-order - (2 * x**2 - 2j * zeta * x) / inner, (1 - x**2) / inner])
+
+    @cached_property
+    def of_forces(self) -> Complexes:
+        """Changes of S by the parameters of L, (parameters, modes, modes)."""
+        root = self.model.root
+        rows, columns, units = _entries(len(root))
+        J = np.zeros((len(rows), *root.shape), complex)
+        J[np.arange(len(rows)), rows] = units[:, None] * root[:, columns].conj().T
+        return J + J.conj().swapaxes(1, 2)
+
+    @cached_property
+    def slope(self) -> Complexes:
+        """Changes of the cost by N, (blocks, columns, columns)."""
+        expected = self.C - self.Y.conj().swapaxes(1, 2) @ self.own @ self.Y
+        return self.band.count[:, None, None] * expected
+
+    @cached_property
+    def slope_of_forces(self) -> Complexes:
+        """Changes of the cost by S, (modes, modes)."""
+        return (self.h.conj().swapaxes(1, 2) @ self.slope @ self.h).sum(axis=0)
+
+    @cached_property
+    def gradient(self) -> Floats:
+        """Changes of the cost by the parameters."""
+        model, m = self.model, self.model.free
+        measured = np.linalg.solve(model.background, self.both.T).T
+        columns = 2 * (self.second @ self.hat.T - measured).real
+        columns[m : model.moving] += (model.precision * model.coherent).T
+        NW = np.sum(self.N * self.slope.swapaxes(1, 2), axis=2)[:, :m]
+        poles = 2 * np.sum(self.of_poles * np.hstack([NW, NW]), axis=0).real
+        whole = self.slope_of_forces.T.ravel()
+        forces = (self.of_forces.reshape(len(self.of_forces), whole.size) @ whole).real
+        return np.concatenate([columns[: model.moving].ravel(), poles, forces])
+
+    @cached_property
+    def bending(self) -> Floats:
+        """Second derivatives of the cost by the parameters of L, of those of S, tr G dL dL^*.
+
+        G is the gradient by S, without its negative part: S on the boundary of what is possible, as
+        where two shapes are alike, has a singular L, by which expected derivatives alone vanish.
+        """
+        value, vector = np.linalg.eigh(self.slope_of_forces)
+        rows, columns, units = _entries(len(value))
+        G = vector * np.maximum(value, 0.0) @ vector.conj().T
+        same = columns[:, None] == columns
+        return 2 * same * (units.conj()[:, None] * G[np.ix_(rows, rows)] * units).real
+
+    @cached_property
+    def information(self) -> Floats:
+        """Expected second derivatives of the cost, tr E^-1 dE E^-1 dE over the lines.
+
+        With a = Psi N, shapes and R change E by e_j a_r^* and its adjoint, poles by d phi_r a_r^*
+        and its adjoint, forces by Psi H J H^* Psi^T. Letters below: shapes, poles, forces.
+        """
+        model, c, d, J = self.model, self.band.count, self.of_poles, self.of_forces
+        (n, M), m, v = model.phi.shape, model.free, model.moving
+        mode = np.tile(np.arange(m), 2)
+        hat, h, D, C, Q, NC = self.hat, self.h, self.D, self.C, self.N - self.D, self.N @ self.C
+        adjoint, left = self.Y.conj().swapaxes(1, 2), h.conj().swapaxes(1, 2)
+        NCh, flat = NC @ h, J.reshape(M**2, M**2).T
+
+        def gram(a: Complexes, b: Complexes) -> Complexes:
+            """Return the sum of c a_rs b_tu over the lines, (r, s, t, u)."""
+            out: Complexes = (a.reshape(len(c), -1).T * c) @ b.reshape(len(c), -1)
+            return out.reshape(*a.shape[1:], *b.shape[1:])
+
+        def each(a: Complexes, b: Complexes) -> Complexes:
+            """Return the sum of c a_rp b_pt over the lines, (p, r, t)."""
+            return np.ascontiguousarray(a.T * c) @ np.ascontiguousarray(b.swapaxes(0, 1))
+
+        # (a_r^* E^-1)_l (a_s^* E^-1)_j + Q_rs (E^-1)_lj
+        SS = gram(D[:, :v], D[:, :v]).swapaxes(1, 2) - gram(Q[:, :v, :v], D)
+        total = np.tensordot(c, Q[:, :v, :v], 1)[..., None, None]
+        SS = (hat @ SS @ hat.T + total * np.linalg.inv(model.background)).transpose(0, 3, 1, 2)
+        SP = each(NC[:, :v, mode] * d[:, None], D[:, mode])
+        SP += each(Q[:, :v, mode] * d.conj()[:, None], adjoint[:, mode])
+        SP = (SP @ hat.T).transpose(1, 2, 0)
+        SF = gram(NCh[:, :v], left @ adjoint).transpose(0, 3, 1, 2)
+        SF = hat @ (SF.reshape(v, hat.shape[1], M**2) @ flat)
+        NCp, Qp, Cp = (y[:, mode][:, :, mode] for y in (NC, Q, C))
+        T, CP = NCp * d[:, None], Cp * d[:, None] * d.conj()[:, :, None]
+        PP = np.sum(c[:, None, None] * (T * T.swapaxes(1, 2) + Qp * CP.swapaxes(1, 2)), axis=0)
+        PF = each(NCh[:, mode].swapaxes(1, 2), ((left @ C)[:, :, mode] * d[:, None]).swapaxes(1, 2))
+        PF = PF.reshape(2 * m, M**2) @ flat
+        Ch = left @ C @ h
+        FF = flat.T @ gram(Ch, Ch).transpose(1, 2, 3, 0).reshape(M**2, M**2) @ flat
+        SS, SP, SF = (y.reshape(v * n, size) for y, size in ((SS, v * n), (SP, 2 * m), (SF, M**2)))
+        parts = [[2 * SS, 2 * SP, 2 * SF], [2 * SP.T, 2 * PP, 2 * PF], [2 * SF.T, 2 * PF.T, FF]]
+        out = np.block(parts).real
+        return out + np.diag(model.prior(len(out)))
 
     def scaled(self, bending: Floats | float = 0.0) -> tuple[Floats, Floats]:
         """Return the information over its diagonal, and the scale; norms of shapes are held."""
@@ -207,8 +337,7 @@ class Fit:
         """A square root of the covariance of all parameters, with as many columns."""
         A, scale = self.scaled()
         value, vector = la.eigh(A)
-        out: Floats = scale[:, None] * vector / np.sqrt(np.maximum(value, LEAST_KNOWN))
-        return out
+        return scale[:, None] * vector / np.sqrt(np.maximum(value, LEAST_KNOWN))
 
     @property
     def freedom(self) -> float:
@@ -222,105 +351,7 @@ class Fit:
         n, m = len(self.model.phi), self.model.free
         first = self.model.moving * n + mode
         half = self.root[[first, first + m, *range(mode * n, (mode + 1) * n)]]
-        out: Floats = half @ half.T
-        return out
-
-
-@dataclass(frozen=True)
-class _Matrices:
-    """The matrices of the module's text in all blocks, (blocks, columns, columns), and the cost.
-
-    ``h`` is H, ``seen`` is F F^* hat of the data, (blocks, sensors, columns), ``own`` is
-    hat^T F F^* hat, and ``weighted`` is D times the number of lines.
-    """
-
-    h: Complexes
-    hat: Floats
-    N: Complexes
-    Y: Complexes
-    D: Complexes
-    C: Complexes
-    seen: Complexes
-    own: Complexes
-    weighted: Complexes
-    cost: float
-
-    @cached_property
-    def both(self) -> Complexes:
-        """Sum of D hat^T F F^* over the lines, of w F^* as expected, (columns, sensors)."""
-        out: Complexes = np.tensordot(self.weighted, self.seen.conj(), ((0, 2), (0, 2)))
-        return out
-
-    @cached_property
-    def second(self) -> Complexes:
-        """Sum of w w^* as expected, (columns, columns); w are the responses to the forces."""
-        out: Complexes = (self.weighted + self.weighted @ self.own @ self.D).sum(axis=0)
-        return out
-
-
-def _matrices(band: Band, model: Density) -> _Matrices:
-    n, B = len(model.phi), model.background
-    h, psi = model.lifted(band.omega, band.order), model.columns
-    inverse = np.linalg.inv(B)
-    hat = inverse @ psi
-    P = psi.T @ hat
-    N, D, determinant = _of_responses(h @ model.root, P)
-    Y = np.eye(len(P)) - D @ P
-    seen = (band.power.reshape(-1, n) @ hat).reshape(len(h), *hat.shape)
-    own, weighted = hat.T @ seen, band.count[:, None, None] * D
-    cost = band.weight * np.linalg.slogdet(B)[1] + np.vdot(inverse, band.total)
-    cost += band.count @ determinant - np.vdot(weighted.conj(), own.swapaxes(1, 2)).real
-    cost += np.sum(model.precision * model.coherent**2) / 2
-    return _Matrices(h, hat, N, Y, D, P @ Y, seen, own, weighted, float(cost))
-
-
-def _of_responses(root: Complexes, P: Floats) -> tuple[Complexes, Complexes, Floats]:
-    """Return N, D and the logarithm of det(I + N P) at all lines, from H L.
-
-    D is H L (I + L^* H^* P H L)^-1 L^* H^*. The logarithm is infinite where rounding is all that is
-    known of it: forces that cancel each other.
-    """
-    adjoint = root.conj().swapaxes(1, 2)
-    A = adjoint @ P @ root
-    trace = np.einsum("kii->k", A).real
-    lost = ~(np.finfo(float).eps * trace < TOLERANCE)
-    A[lost] = 0.0
-    C = np.linalg.cholesky(A + np.eye(A.shape[1]))
-    half = np.linalg.solve(C, adjoint)
-    determinant = 2 * np.log(np.einsum("kii->ki", C).real).sum(axis=1)
-    determinant[lost] = np.inf
-    return root @ adjoint, half.conj().swapaxes(1, 2) @ half, determinant
-
-
-def evaluate(band: Band, model: Density, known: _Matrices | None = None) -> Fit:
-    """Return the cost of a model with its gradient and the expected second derivatives.
-
-    ``known`` are its matrices where they are computed already.
-    """
-    x, c, m = known or _matrices(band, model), band.count, model.free
-    rows, columns_of, units = _entries(len(model.root))
-    d, J = _changes(band, model), np.zeros((len(rows), *model.root.shape), complex)
-    J[np.arange(len(rows)), rows] = units[:, None] * model.root[:, columns_of].conj().T
-    J += J.conj().swapaxes(1, 2)  # the derivatives of S by the parameters of L
-    W = c[:, None, None] * (x.C - x.Y.conj().swapaxes(1, 2) @ x.own @ x.Y)
-    measured = np.linalg.solve(model.background, x.both.T).T
-    columns = 2 * (x.second @ x.hat.T - measured).real
-    NW = np.sum(x.N * W.swapaxes(1, 2), axis=2)[:, :m]
-    poles = 2 * np.sum(d * np.hstack([NW, NW]), axis=0).real
-    whole = (x.h.conj().swapaxes(1, 2) @ W @ x.h).sum(axis=0).T
-    forces = (J.reshape(len(J), whole.size) @ whole.ravel()).real
-    columns[m : model.moving] += (model.precision * model.coherent).T
-    gradient = np.concatenate([columns[: model.moving].ravel(), poles, forces])
-    information = _information(model, x, c, d, J)
-    information += np.diag(model.prior(len(gradient)))
-    return Fit(model, x.cost, gradient, information, _bending(whole.T))
-
-
-def _changes(band: Band, model: Density) -> Complexes:
-    """Return the changes of ln h by ln omega and by ln zeta of free modes, (blocks, 2 free)."""
-    zeta, x = model.zeta[: model.free], band.omega[:, None] / model.omega[: model.free]
-    inner = 1 - x**2 + 2j * zeta * x
-    return np.hstack([-band.order - (2 * x**2 - 2j * zeta * x) / inner, (1 - x**2) / inner])
+        return half @ half.T
 
 
 @cache
@@ -333,75 +364,16 @@ def _entries(M: int) -> tuple[Ints, Ints, Complexes]:
     return rows, columns, np.where(again, 1j, 1.0)
 
 
-def _bending(G: Complexes) -> Floats:
-    """Return tr G dL dL^* as second derivatives by the parameters of L.
+def _with_background(x: Fit, share: float) -> tuple[Fit, float]:
+    r"""Return a model after a step of its background, beside the data, and the share of the next.
 
-    G is the gradient by S, without its negative part: S on the boundary of what is possible, as
-    where two shapes are alike, has a singular L, by which expected derivatives alone vanish.
+    It is a step of scoring, halved until the cost falls. With B = R R^T and changes R Z R^T, the
+    second derivatives are :math:`\sum_k (I - V D V^T) Z (I - V D V^T)`, V = R^-1 Psi, and the
+    gradient is the step of expectation and maximisation times the number of lines. In an
+    orthonormal basis U of V and beside it, the parts of Z are solved for one by one.
     """
-    rows, columns, units = _entries(len(G))
-    value, vector = np.linalg.eigh(G)
-    G = vector * np.maximum(value, 0.0) @ vector.conj().T
-    same = columns[:, None] == columns
-    out: Floats = 2 * same * (units.conj()[:, None] * G[np.ix_(rows, rows)] * units).real
-    return out
-
-
-def _information(model: Density, x: _Matrices, c: Floats, d: Complexes, J: Complexes) -> Floats:
-    """Return the expected second derivatives, tr E^-1 dE E^-1 dE over the lines.
-
-    With a = Psi N, shapes and R change E by e_j a_r^* and its adjoint, poles by d phi_r a_r^* and
-    its adjoint, forces by Psi H J H^* Psi^T. Letters below: shapes, poles, forces.
-    """
-    (n, M), m, v = model.phi.shape, model.free, model.moving
-    mode = np.tile(np.arange(m), 2)
-    hat, h, D, C, Q, NC = x.hat, x.h, x.D, x.C, x.N - x.D, x.N @ x.C
-    adjoint, left = x.Y.conj().swapaxes(1, 2), h.conj().swapaxes(1, 2)
-    NCh, flat = NC @ h, J.reshape(M**2, M**2).T
-
-    def gram(a: Complexes, b: Complexes) -> Complexes:
-        """Return the sum of c a_rs b_tu over the lines, (r, s, t, u)."""
-        out: Complexes = (a.reshape(len(c), -1).T * c) @ b.reshape(len(c), -1)
-        return out.reshape(*a.shape[1:], *b.shape[1:])
-
-    def each(a: Complexes, b: Complexes) -> Complexes:
-        """Return the sum of c a_rp b_pt over the lines, (p, r, t)."""
-        out: Complexes = np.ascontiguousarray(a.T * c) @ np.ascontiguousarray(b.swapaxes(0, 1))
-        return out
-
-    # (a_r^* E^-1)_l (a_s^* E^-1)_j + Q_rs (E^-1)_lj
-    SS = gram(D[:, :v], D[:, :v]).swapaxes(1, 2) - gram(Q[:, :v, :v], D)
-    total = np.tensordot(c, Q[:, :v, :v], 1)[..., None, None]
-    SS = (hat @ SS @ hat.T + total * np.linalg.inv(model.background)).transpose(0, 3, 1, 2)
-    SP = each(NC[:, :v, mode] * d[:, None], D[:, mode])
-    SP += each(Q[:, :v, mode] * d.conj()[:, None], adjoint[:, mode])
-    SP = (SP @ hat.T).transpose(1, 2, 0)
-    SF = gram(NCh[:, :v], left @ adjoint).transpose(0, 3, 1, 2)
-    SF = hat @ (SF.reshape(v, hat.shape[1], M**2) @ flat)
-    NCp, Qp, Cp = (y[:, mode][:, :, mode] for y in (NC, Q, C))
-    T, CP = NCp * d[:, None], Cp * d[:, None] * d.conj()[:, :, None]
-    PP = np.sum(c[:, None, None] * (T * T.swapaxes(1, 2) + Qp * CP.swapaxes(1, 2)), axis=0)
-    PF = each(NCh[:, mode].swapaxes(1, 2), ((left @ C)[:, :, mode] * d[:, None]).swapaxes(1, 2))
-    PF = PF.reshape(2 * m, M**2) @ flat
-    Ch = left @ C @ h
-    FF = flat.T @ gram(Ch, Ch).transpose(1, 2, 3, 0).reshape(M**2, M**2) @ flat
-    SS, SP, SF = (y.reshape(v * n, size) for y, size in ((SS, v * n), (SP, 2 * m), (SF, M**2)))
-    out: Floats = np.block(
-        [[2 * SS, 2 * SP, 2 * SF], [2 * SP.T, 2 * PP, 2 * PF], [2 * SF.T, 2 * PF.T, FF]]
-    ).real
-    return out
-
-
-def _background(band: Band, model: Density, x: _Matrices) -> tuple[Floats, Floats]:
-    r"""Return Q and z of a step of scoring of the background, to Q Q^T with Q as it is for z = 0.
-
-    With B = R R^T and changes R Z R^T, the second derivatives are :math:`\sum_k (I - V D V^T) Z
-    (I - V D V^T)`, V = R^-1 Psi, and the gradient is the step of expectation and maximisation
-    times the number of lines. In an orthonormal basis U of V and beside it, the parts of Z are
-    solved for one by one.
-    """
-    c, weight, psi = band.count, band.weight, model.columns
-    both = (psi @ x.both).real
+    band, model, psi = x.band, x.model, x.model.columns
+    c, weight, both = band.count, band.weight, (psi @ x.both).real
     after = band.total - both - both.T + psi @ x.second.real @ psi.T
     R = la.cholesky(model.background, lower=True)
     V = la.solve_triangular(R, psi, lower=True)
@@ -421,25 +393,13 @@ def _background(band: Band, model: Density, x: _Matrices) -> tuple[Floats, Float
     Z[:size, size:] = la.solve(weight * eye - single, Z[:size, size:], assume_a="pos")
     Z[size:, :size], Z[size:, size:] = Z[:size, size:].T, Z[size:, size:] / weight
     z, vector = la.eigh((Z + Z.T) / 2)
-    return R @ U @ vector, z
-
-
-def _with_background(
-    band: Band, model: Density, x: _Matrices, share: float
-) -> tuple[Density, _Matrices, float]:
-    """Return the model after a step of its background, its matrices, and the share of the next.
-
-    The step is halved until the cost falls.
-    """
-    Q, z = _background(band, model, x)
-    z = np.maximum(z, -MOST_OF_BACKGROUND)
+    z, Q = np.maximum(z, -MOST_OF_BACKGROUND), R @ U @ vector
     while share > SHORTEST:
-        trial = replace(model, background=(Q * (1 + share * z)) @ Q.T)
-        after = _matrices(band, trial)
-        if after.cost <= x.cost:
-            return trial, after, min(2 * share, 1.0)
+        trial = Fit(band, replace(model, background=(Q * (1 + share * z)) @ Q.T))
+        if trial.cost <= x.cost:
+            return trial, min(2 * share, 1.0)
         share /= 2
-    return model, x, 1.0
+    return x, 1.0
 
 
 def maximise(band: Band, model: Density, most: int = MOST_STEPS) -> Fit:
@@ -448,24 +408,23 @@ def maximise(band: Band, model: Density, most: int = MOST_STEPS) -> Fit:
     Scoring is Newton's method with the expected second derivatives; where a step would increase the
     cost, it is damped as Levenberg and Marquardt do. The background follows every step.
     """
-    fit, damping, share = evaluate(band, _normalised(model)), 1e-3, 1.0
+    fit, damping, share = Fit(band, _normalised(model)), 1e-3, 1.0
     for _ in range(most):
         A, scale = fit.scaled(fit.bending)
         value, vector = la.eigh(A)
         weights = vector.T @ (scale * fit.gradient) / (np.maximum(value, 1e-10) + damping)
-        trial = _moved(fit.model, -scale * (vector @ weights))
-        x = _matrices(band, trial)
-        if not x.cost < fit.cost + TOLERANCE:
+        trial = Fit(band, _moved(fit.model, -scale * (vector @ weights)))
+        if not trial.cost < fit.cost + TOLERANCE:
             damping = max(8 * damping, 1e-3)
             if damping > 1e8:
                 break
             continue
         before = fit.cost
-        trial, x, share = _with_background(band, trial, x, share)
-        fit = evaluate(band, trial, x)
+        fit, share = _with_background(trial, share)
         damping = damping / 8
         if abs(before - fit.cost) < TOLERANCE and damping < 1e-2:
-            return replace(fit, converged=True)
+            fit.converged = True
+            break
     return fit
 
 
@@ -477,9 +436,7 @@ def excess(band: Band, model: Density) -> float:
     :math:`2 c (w - 1 - \ln w)` in twice the cost. Windows have 1, 2, 4, ... blocks, and reach no
     end of the band: what does is the flank of what moves outside of it.
     """
-    moved = model.columns @ model.lifted(band.omega, band.order) @ model.root
-    E = moved @ moved.conj().swapaxes(1, 2) + model.background
-    L = np.linalg.cholesky(E)
+    L = model.factors(band.omega, band.order)[1]
     half = np.linalg.solve(L, band.power).conj().swapaxes(1, 2)
     white = band.count[:, None, None] * np.linalg.solve(L, half)
     most, blocks = 0.0, len(L)

@@ -48,14 +48,12 @@ class StabilisationDiagram:
     @property
     def frequency(self) -> Floats:
         """Natural frequencies in Hz."""
-        out: Floats = np.abs(self.pole) / (2 * np.pi)
-        return out
+        return np.abs(self.pole) / (2 * np.pi)
 
     @property
     def damping(self) -> Floats:
         """Damping ratios."""
-        out: Floats = -self.pole.real / np.abs(self.pole)
-        return out
+        return -self.pole.real / np.abs(self.pole)
 
 
 def diagram_of(data: FrequencyResponses, variance: Floats) -> StabilisationDiagram:
@@ -109,15 +107,13 @@ def shapes_of(lam: Complexes, L: Complexes, H: Complexes, s: Complexes, q: int) 
         right += basis.conj() @ H[j].T
     scale = 1 / np.sqrt(np.maximum(normal.diagonal().real, TINY))
     scaled = normal * np.outer(scale, scale) + 1e-13 * np.eye(len(scale))
-    out: Complexes = (scale[:, None] * la.solve(scaled, scale[:, None] * right))[:n]
-    return out
+    return (scale[:, None] * la.solve(scaled, scale[:, None] * right))[:n]
 
 
 def _distances(a: Complexes, psi_a: Complexes, b: Complexes, psi_b: Complexes) -> Floats:
     """Return d of every pole of one list and every pole of another."""
     size = np.maximum(np.abs(a)[:, None], np.abs(b)[None])
-    out: Floats = np.abs(a[:, None] - b) / size + np.maximum(1 - mac(psi_a.T, psi_b.T), 0)
-    return out
+    return np.abs(a[:, None] - b) / size + np.maximum(1 - mac(psi_a.T, psi_b.T), 0)
 
 
 def _clusters(order: Ints, pole: Complexes, stable: Ints, psi: Complexes) -> Ints:
@@ -154,15 +150,13 @@ def support(diagram: StabilisationDiagram, pole: Complexes, strength: Floats) ->
                 present[r, k] = True
                 left = np.delete(left, distance.argmin())
     since = np.maximum.accumulate(present, axis=1).sum(axis=1)
-    out: Floats = present.sum(axis=1) / np.maximum(since, 1)
-    return out
+    return present.sum(axis=1) / np.maximum(since, 1)
 
 
 def complex_indicators(data: FrequencyResponses) -> Floats:
     """Return the complex mode indicator functions, (references, lines), the greatest first."""
     H = np.where(data.measured, data.H, 0).transpose(2, 0, 1)
-    out: Floats = np.linalg.svd(H, compute_uv=False).T ** 2
-    return out
+    return np.linalg.svd(H, compute_uv=False).T ** 2
 
 
 def multivariate_indicators(data: FrequencyResponses) -> Floats:

@@ -14,8 +14,8 @@ import scipy.fft
 import scipy.linalg as la
 from scipy.stats import chi2
 
-from modefront._typing import Bools, Complexes, Floats
-from modefront.identification.modal_model import Fit, columns
+from modefront._typing import Complexes, Floats
+from modefront.identification.modal_model import Fit
 from modefront.identification.noise import square
 from modefront.identification.problem import Problem, gram
 from modefront.identification.record import MOST_COVARIED, ModeEstimate, Residuals
@@ -26,8 +26,7 @@ SIGNIFICANT = 3.0  # standard errors beyond which a correlation of the residuals
 SILENT = 1e-3  # probability that a response that holds nothing but noise is taken for one that does
 MOST_LAGS = 60  # lines over which correlations of the residuals are measured
 MOST_TIMES = 400  # samples of the noise of the force; they are taken together where there are more
-TOGETHER = 50  # samples of the noise of the force whose effects are computed at once
-CHUNK = 1 << 20  # numbers in an array of effects of lines that are computed at once
+CHUNK = 1 << 20  # numbers in an array of effects of errors that are computed at once
 
 
 def residuals(fit: Fit) -> Residuals:
@@ -104,21 +103,20 @@ def _force(fit: Fit) -> Floats:
     b = per_line.sum(axis=1)
     error = np.sqrt((per_line**2).sum(axis=1))
     good = (b > SIGNIFICANT * error) & (below > 0)
-    out: Floats = np.where(good, b / np.where(below > 0, below, 1.0), 0.0)
-    return out
+    return np.where(good, b / np.where(below > 0, below, 1.0), 0.0)
 
 
 def mode_estimates(fit: Fit, residuals: Residuals, omega: float) -> list[ModeEstimate]:
     """Return all modes of a fit with standard deviations; ``omega`` is the unit of the poles."""
-    model, n = fit.model, 2 * len(fit.model)
-    pole = [k for k, _, v in model.alphas if v is None]
-    shapes = [real_shape(phi) for phi in model.phi]
-    for r, s in model.pairs:
-        shapes[r], shapes[s] = real_shapes(model.phi[[r, s]])
+    n = 2 * len(fit.lam)
+    pole = [k for k, _, v in fit.alphas if v is None]
+    shapes = [real_shape(phi) for phi in fit.phi]
+    for r, s in fit.pairs:
+        shapes[r], shapes[s] = real_shapes(fit.phi[[r, s]])
     inverse, follows = fit.inverted(fit.information), fit.Z[:, :n]
     Q = _covariances(fit, residuals)
     own, C = Q[:, :n, :n], inverse @ Q[:, n:, n:].sum(axis=0) @ inverse
-    whole = model.phi.shape[1] <= MOST_COVARIED
+    whole = fit.phi.shape[1] <= MOST_COVARIED
     spread = []
     for r, shape in enumerate(shapes):
         rows = slice(2 * r, 2 * r + 2)
@@ -133,35 +131,25 @@ def mode_estimates(fit: Fit, residuals: Residuals, omega: float) -> list[ModeEst
         for r, shape in enumerate(shapes):
             change = shape.differential(c[:, 2 * r] + 1j * c[:, 2 * r + 1])
             spread[r] += change @ change.T if whole else np.vecdot(change, change)
-    scale, hertz = max(residuals.chi2, 1.0), omega / (2 * np.pi)
-    gone = ~fit.task.weight.any(axis=(0, 2)) | _silent(model.phi, scale * own)
+    scale = max(residuals.chi2, 1.0)
+    # Some responses show nothing that noise would not make of all shapes.
+    known = fit.c[:, None] @ np.linalg.pinv(scale * own, hermitian=True) @ fit.c[..., None]
+    gone = ~fit.task.weight.any(axis=(0, 2)) | (known[:, 0, 0] < chi2.isf(SILENT, n))
     out = []
     for r, covariance in enumerate(spread):
         covariance *= scale
         covariance[gone] = np.nan
         if whole:
             covariance[:, gone] = np.nan
-        lam, of_pole = model.lam[r], C[2 * pole[r] :, 2 * pole[r] :][:2, :2] * scale
+        lam, of_pole = fit.lam[r], C[2 * pole[r] :, 2 * pole[r] :][:2, :2] * scale
         size = float(abs(lam))
         df = np.array([lam.real, lam.imag]) / size
         two = np.array([df, np.array([-1 / size, 0.0]) + lam.real / size**2 * df])
         f_std, zeta_std = np.sqrt(np.einsum("ka,ab,kb->k", two, of_pole, two)).tolist()
-        known = complex(lam) * omega, size * hertz, float(-lam.real) / size, f_std * hertz, zeta_std
+        pole_of, hertz_std = complex(lam) * omega, f_std * omega / (2 * np.pi)
         std = np.sqrt(np.maximum(covariance.diagonal() if whole else covariance, 0.0))
-        rest = shapes[r], std, model.L[r]
-        kept = covariance if whole else None
-        out.append(ModeEstimate(*known, *rest, shape_covariance=kept))
-    return out
-
-
-def _silent(phi: Complexes, covariance: Floats) -> Bools:
-    """Return which responses show nothing that noise would not make of all shapes, (responses,).
-
-    ``covariance`` is that of their components, real and imaginary.
-    """
-    c = np.stack([phi.real, phi.imag], axis=1).reshape(-1, phi.shape[1]).T[..., None]
-    size = c.swapaxes(1, 2) @ np.linalg.pinv(covariance, hermitian=True) @ c
-    out: Bools = size[:, 0, 0] < chi2.isf(SILENT, c.shape[1])
+        kept, L = covariance if whole else None, fit.L[r]
+        out.append(ModeEstimate(pole_of, hertz_std, zeta_std, shapes[r], std, L, kept))
     return out
 
 
@@ -171,8 +159,8 @@ def _covariances(fit: Fit, residuals: Residuals) -> Floats:
     They are those of G^-1 Phi^T dy, (2 modes), and D_perp^T dy, (alphas). Noise of the force is
     taken out of the variance: it is not independent.
     """
-    task, n = fit.task, len(fit.model)
-    E, T, X = columns(fit)
+    task, n = fit.task, len(fit.lam)
+    E, T, X = fit.columns()
     first, weight = T.shape[1], task.weight
     if residuals.force.any():
         variance = residuals.force[:, None]
@@ -188,8 +176,7 @@ def _covariances(fit: Fit, residuals: Residuals) -> Floats:
     P = np.zeros((*M.shape[:3], 2 * n + X.shape[3]))
     P[:, :, :first, : 2 * n] = T[:, None] @ fit.inverse[:, :, : 2 * n]
     P[..., 2 * n :] = X
-    out: Floats = (P.swapaxes(2, 3) @ (M @ P)).sum(axis=0) / 2
-    return out
+    return (P.swapaxes(2, 3) @ (M @ P)).sum(axis=0) / 2
 
 
 def _force_influence(
@@ -200,7 +187,7 @@ def _force_influence(
     Those of the shapes are (responses, 2 modes, errors).
     """
     n = follows.shape[1]
-    E, T, X = columns(fit)
+    E, T, X = fit.columns()
     for j in np.flatnonzero(force).tolist():
         weighted = fit.task.weight[j] * fit.functions[j]
         for products in _force_products(fit.task, E, weighted, j, force[j]):
@@ -217,8 +204,8 @@ def _force_products(
     Errors are independent at every line or, where the noise is known in time, at every sample;
     samples closer than lines of the band can tell apart are taken together.
     """
+    portion = max(CHUNK // max(weighted.shape[0] * len(E), 1), 1)
     if not task.force_noise:
-        portion = max(CHUNK // max(weighted.shape[0] * len(E), 1), 1)
         for start in range(0, len(task.s), portion):
             lines = slice(start, start + portion)
             yield E[:, lines].conj() * (np.sqrt(b / 2) * weighted[:, None, lines])
@@ -229,9 +216,7 @@ def _force_products(
     share = np.bincount(bins, noise.share)
     kept = share > 0
     times = np.bincount(bins, noise.share * noise.times)[kept] / share[kept]
-    share = share[kept]
-    for start in range(0, len(times), TOGETHER):
-        part = slice(start, start + TOGETHER)
-        error = noise.deviation[:, None] * np.exp(-1j * np.outer(f, times[part]))
-        error = error * np.sqrt(share[part] / 2)
-        yield (weighted[:, None] * E.conj()) @ error
+    error = noise.deviation[:, None] * np.exp(-1j * np.outer(f, times)) * np.sqrt(share[kept] / 2)
+    effects = weighted[:, None] * E.conj()
+    for start in range(0, len(times), portion):
+        yield effects @ error[:, start : start + portion]

@@ -25,7 +25,7 @@ def figures(
 
 def _stabilisation(identification: Identification) -> Picture:
     (figure, axes), diagram = single(7.0, 4.0), identification.diagram
-    measured = identification.functions.data
+    measured = identification.data
     for stable, marker, colour, label in (
         (False, "x", "0.7", "unstable"),
         (True, "o", COLOURS[0], "stable"),
@@ -49,7 +49,7 @@ def _stabilisation(identification: Identification) -> Picture:
 
 def _indicators(identification: Identification) -> Picture:
     """Draw the complex mode indicator functions, and the multivariate ones of hammer tests."""
-    data = identification.functions.data
+    data = identification.data
     curves = [("CMIF", "log", complex_indicators(data))]
     if np.any(np.nan_to_num(data.H).imag):  # spectral densities of ambient tests have no phase
         curves.append(("multivariate MIF", "linear", multivariate_indicators(data)))
@@ -69,15 +69,15 @@ def _indicators(identification: Identification) -> Picture:
 
 def _functions(identification: Identification) -> Picture:
     """Draw synthesised over measured functions, those with the greatest residuals first."""
-    fitted, share = identification.functions, identification.functions.residuals.share
+    data, share = identification.data, identification.residuals.share
     listed = np.argsort(-share, axis=None)[: int(np.isfinite(share).sum())][:MOST_PANELS]
     figure, grid = panels(listed.size)
     for axes, position in zip(grid, listed, strict=True):
         j, i = np.unravel_index(position, share.shape)
-        measured = (fitted.data.H, "0.6", "measured")
-        for H, colour, label in (measured, (fitted.synthesised, COLOURS[1], "synthesised")):
-            axes.semilogy(fitted.data.frequency, np.abs(H[j, i]), color=colour, lw=0.8, label=label)
-        pair = f"{fitted.data.references[j]} to {fitted.data.responses[i]}"
+        measured = (data.H, "0.6", "measured")
+        for H, colour, label in (measured, (identification.synthesised, COLOURS[1], "synthesised")):
+            axes.semilogy(data.frequency, np.abs(H[j, i]), color=colour, lw=0.8, label=label)
+        pair = f"{data.references[j]} to {data.responses[i]}"
         axes.set_title(f"{short(pair)}: residual {share[j, i]:.1%}")
         axes.set_xlabel("frequency in Hz")
         if axes is grid[0]:

@@ -35,7 +35,7 @@ def write_identification(test: IdentifiedTest, path: Path) -> Path:
 
 def _set(test: IdentifiedTest, k: int) -> dict[str, Any]:
     each, seeds = test.identified[k], test.test.chosen.seeds
-    data, diagram = each.functions.data, each.diagram
+    data, diagram = each.data, each.diagram
     # Lines evenly over the band, and those at modes.
     even = np.linspace(0, len(data.frequency) - 1, min(len(data.frequency), MOST_LINES)).astype(int)
     nearest = [int(np.abs(data.frequency - mode.frequency).argmin()) for mode in each.modes]
@@ -60,11 +60,11 @@ def _set(test: IdentifiedTest, k: int) -> dict[str, Any]:
                 "frequencyStd": mode.frequency_std,
                 "damping": mode.damping,
                 "dampingStd": mode.damping_std,
-                "evidence": mode.evidence.gain,
-                "orders": mode.evidence.support,
-                "seen": mode.evidence.visibility,
+                "evidence": mode.gain,
+                "orders": mode.support,
+                "seen": mode.visibility,
                 "collinearity": mode.shape.collinearity,
-                "flags": mode.evidence.flags,
+                "flags": mode.flags,
                 "shape": _rounded(mode.shape.shape),
             }
             for mode, number in zip(each.modes, test.numbers[k], strict=True)
@@ -88,15 +88,14 @@ def _set(test: IdentifiedTest, k: int) -> dict[str, Any]:
 
 
 def _functions(each: Identification, kept: Any) -> list[dict[str, Any]]:
-    fitted = each.functions
-    share = fitted.residuals.share
+    share = each.residuals.share
     listed = np.argsort(-share, axis=None)[: int(np.isfinite(share).sum())]
     return [
         {
-            "name": f"{fitted.data.references[j]} to {fitted.data.responses[i]}",
+            "name": f"{each.data.references[j]} to {each.data.responses[i]}",
             "residual": float(share[j, i]),
-            "measured": _logarithms(np.abs(fitted.data.H[j, i, kept]) ** 2),
-            "synthesised": _logarithms(np.abs(fitted.synthesised[j, i, kept]) ** 2),
+            "measured": _logarithms(np.abs(each.data.H[j, i, kept]) ** 2),
+            "synthesised": _logarithms(np.abs(each.synthesised[j, i, kept]) ** 2),
         }
         for j, i in np.transpose(np.unravel_index(listed[:MOST_FUNCTIONS], share.shape))
     ]

@@ -19,8 +19,6 @@ from modefront.data.modal_test import Records
 from modefront.data.responses import FrequencyResponses
 from modefront.identification import harmonics, selection, spectra, spectral_density
 from modefront.identification.record import (
-    Evidence,
-    FittedFunctions,
     Identification,
     ModeEstimate,
     Rejected,
@@ -97,6 +95,20 @@ class Local:
         """Half bandwidth in rad/s."""
         return self.zeta * self.omega
 
+    @property
+    def estimate(self) -> ModeEstimate:
+        """The mode with its standard deviations, in physical units."""
+        stds = np.sqrt(np.diag(self.covariance))
+        return ModeEstimate(
+            complex(-self.half, self.omega * np.sqrt(1 - self.zeta**2)),
+            float(stds[0]) * self.omega / (2 * np.pi),
+            float(stds[1]) * self.zeta,
+            real_shape(np.nan_to_num(self.phi).astype(complex)),
+            stds[2:],
+            np.zeros(0, complex),
+            shape_covariance=self.covariance[2:, 2:],
+        )
+
 
 @dataclass(frozen=True)
 class _Setup:
@@ -123,14 +135,10 @@ def identify(
     """Return the modes of the structure within a band in Hz, from the records of all setups.
 
     ``modes`` is their number where it is known; ``seeds`` are frequencies in Hz at which a mode is
-    kept whatever its evidence. Sensors of the same name in several setups are the references.
-    Raises ValueError where the band has too few lines.
+    kept whatever its evidence. Sensors of the same name in several setups are the references. The
+    band has `LEAST_LINES` of each.
     """
     low, high = band or default_band(setups)
-    for records in setups:
-        count = int((min(high, records.rate / 2) - low) * records.duration)
-        if count < LEAST_LINES:
-            raise ValueError(f"expected {LEAST_LINES} lines in the band, found {max(count, 0)}")
     identified = [_of_setup(records, low, high, seeds) for records in setups]
     groups = _groups(identified, LEAST_MAC)
     identified = [_completed(k, identified, groups) for k in range(len(setups))]
@@ -368,31 +376,9 @@ def _shares(band: Band, model: Density) -> Floats:
     return np.minimum(shares.max(axis=0), 1.0)
 
 
-def _estimate(omega: float, zeta: float, phi: Floats, covariance: Floats) -> ModeEstimate:
-    """Return a mode in physical units, with the covariance of ln omega, ln zeta and phi."""
-    shape, stds = real_shape(np.nan_to_num(phi).astype(complex)), np.sqrt(np.diag(covariance))
-    return ModeEstimate(
-        complex(-zeta * omega, omega * np.sqrt(1 - zeta**2)),
-        omega / (2 * np.pi),
-        zeta,
-        float(stds[0]) * omega / (2 * np.pi),
-        float(stds[1]) * zeta,
-        shape,
-        stds[2:],
-        np.zeros(0, complex),
-        shape_covariance=covariance[2:, 2:],
-    )
-
-
 def _groups(setups: Sequence[_Setup], least: float = 0.0) -> list[dict[int, int]]:
     """Return which mode of each setup every mode of the structure is."""
-    local = [
-        (
-            each.records.sensors,
-            [_estimate(x.omega, x.zeta, x.phi, x.covariance) for x in each.modes],
-        )
-        for each in setups
-    ]
+    local = [(x.records.sensors, [mode.estimate for mode in x.modes]) for x in setups]
     return mode_groups(local, least)
 
 
@@ -432,34 +418,30 @@ def _combined(
         freedom = sum(local.freedom for _, local in having)
         gain = sum(local.gain for _, local in having) - misfit
         gain /= float(chi2.isf(FALSE / lines, freedom))
-        mode = replace(mode, evidence=_evidence(having, mode, len(setups), gain))
+        mode = _judged(having, mode, len(setups), gain)
         if not any(local.held for _, local in having):
             why = _harmonic(having)
             if len(having) == 1 < len(setups):
                 why = "none of the other setups has it, where its pole was tried"
-            elif mode.evidence.gain < 1:
+            elif mode.gain < 1:
                 why = "noise alone may explain as much in all setups"
         if why:
             rejected.append(Rejected(mode.frequency, mode.damping, why))
         else:
             modes.append(mode)
-    if count is not None and len(modes) > count:
-        order = sorted(modes, key=lambda mode: -mode.evidence.gain)
-        rejected += [
-            Rejected(mode.frequency, mode.damping, "weaker than the modes asked for")
-            for mode in order[count:]
-        ]
-        modes = order[:count]
-    first = max(setups, key=lambda setup: len(setup.records.sensors))
+    modes.sort(key=lambda mode: -mode.gain)
+    weak, text = modes[count:] if count else [], "weaker than the modes asked for"
+    rejected += [Rejected(mode.frequency, mode.damping, text) for mode in weak]
+    first, data = max(setups, key=lambda x: len(x.records.sensors)), _densities(setups, sensors)
     return Identification(
         sensors,
         band,
-        tuple(sorted(modes, key=lambda mode: mode.frequency)),
+        tuple(sorted(modes[:count], key=lambda mode: mode.frequency)),
         tuple(sorted(rejected, key=lambda pole: pole.frequency)),
         first.diagram,
-        _functions(setups, sensors),
-        0,
-        converged=True,
+        data,
+        np.full(data.H.shape, np.nan, complex),
+        Residuals(1.0, np.ones(1, complex), np.zeros(1), np.full(data.H.shape[:2], np.nan)),
     )
 
 
@@ -487,13 +469,14 @@ def _of_structure(
     shapes = [mode.phi for _, mode in having]
     phi, C, of_shapes = merged_shape(places, shapes, covariances, len(sensors))
     omega, zeta = np.exp(means).tolist()
-    misfits = float(misfit.sum() + of_shapes)
-    return _estimate(omega, zeta, phi, la.block_diag(of_pole, C)), misfits
+    merged = Local(omega, zeta, phi, covariance=la.block_diag(of_pole, C))
+    return merged.estimate, float(misfit.sum() + of_shapes)
 
 
-def _evidence(
+def _judged(
     having: Sequence[tuple[_Setup, Local]], mode: ModeEstimate, setups: int, gain: float
-) -> Evidence:
+) -> ModeEstimate:
+    """Return a mode with what speaks for it."""
     share = max(
         float(support(setup.diagram, np.array([mode.pole]), np.ones(1))[0]) for setup, _ in having
     )
@@ -506,7 +489,8 @@ def _evidence(
         flags.append("its band holds more than its modes: errors may be greater than they seem")
     if mode.damping_std > mode.damping / 2:
         flags.append("damping hardly determined: the record is short")
-    return Evidence(gain, share, max(local.share for _, local in having), tuple(flags))
+    visible = max(local.share for _, local in having)
+    return replace(mode, gain=gain, support=share, visibility=visible, flags=tuple(flags))
 
 
 def _harmonic(having: Sequence[tuple[_Setup, Local]]) -> str:
@@ -520,7 +504,7 @@ def _harmonic(having: Sequence[tuple[_Setup, Local]]) -> str:
     return ""
 
 
-def _functions(setups: Sequence[_Setup], sensors: tuple[str, ...]) -> FittedFunctions:
+def _densities(setups: Sequence[_Setup], sensors: tuple[str, ...]) -> FrequencyResponses:
     """Return the spectral densities of all sensors, each from the first setup that has it."""
     lines = setups[0].lines
     edges = np.linspace(lines.omega[0], lines.omega[-1], min(LINES_SHOWN, len(lines.omega)) + 1)
@@ -531,7 +515,4 @@ def _functions(setups: Sequence[_Setup], sensors: tuple[str, ...]) -> FittedFunc
             power = np.histogram(setup.lines.omega, edges, weights=np.abs(F) ** 2)[0]
             density[0, sensors.index(name)] = power / np.maximum(count, 1)
     f = (edges[1:] + edges[:-1]) / (4 * np.pi)
-    data = FrequencyResponses(f, density, "receptance", ("spectral density",), sensors)
-    nothing = np.full(density.shape[:2], np.nan)
-    residuals = Residuals(1.0, np.ones(1, complex), np.zeros(1), nothing)
-    return FittedFunctions(data, np.full(density.shape, np.nan, complex), residuals, 0)
+    return FrequencyResponses(f, density, "receptance", ("spectral density",), sensors)

@@ -13,16 +13,10 @@ import numpy as np
 from modefront._typing import Bools, Floats
 from modefront.data.responses import FrequencyResponses
 from modefront.identification import selection, stabilisation
-from modefront.identification.modal_model import Fit, evaluate
+from modefront.identification.modal_model import Fit
 from modefront.identification.noise import fitted_variance, square, variance_from_differences
 from modefront.identification.problem import RESIDUALS, primitives, problem
-from modefront.identification.record import (
-    Evidence,
-    FittedFunctions,
-    Identification,
-    ModeEstimate,
-    Rejected,
-)
+from modefront.identification.record import Identification, ModeEstimate, Rejected
 from modefront.identification.statistics import mode_estimates, residuals
 from modefront.linalg.small import mac
 from modefront.rounding import TINY
@@ -47,14 +41,9 @@ def identify(
     """Return the modes of one data set within a band in Hz, by default all of it.
 
     ``modes`` is their number where it is known; ``seeds`` are frequencies in Hz at which a mode is
-    kept whatever its evidence. Raises ValueError where the band has too few lines or nothing was
-    measured in it.
+    kept whatever its evidence. The band has `LEAST_LINES`, and functions that are not zero.
     """
     data = data.within(*(band or (0.0, np.inf)))
-    if len(data.frequency) < LEAST_LINES:
-        raise ValueError(f"expected {LEAST_LINES} lines in the band, found {len(data.frequency)}")
-    if not np.any(np.abs(np.nan_to_num(data.H)) > 0):
-        raise ValueError("expected functions that are not zero, found only zeros")
     kind = weighting(data)
     if data.variance is None or kind == "residuals":
         first = variance_from_differences(data.H)
@@ -66,15 +55,15 @@ def identify(
         small, shared = data, first
     task, omega, _ = problem(small, shared)
     lam, L = diagram.pole[diagram.clusters] / omega, diagram.participation[diagram.clusters]
-    fit = selection.refit(evaluate(task, lam, L), lam, L)
-    fit = selection.refit(_reweighted(fit, kind), fit.model.lam, fit.model.L)
+    fit = selection.refit(Fit(task, lam, L), lam, L)
+    fit = selection.refit(_reweighted(fit, kind), fit.lam, fit.L)
     fit = selection.grow(selection.backward(fit, modes)[0], modes)
     task, omega, size = problem(data, first)
-    fit = evaluate(task, fit.model.lam, fit.model.L)
+    fit = Fit(task, fit.lam, fit.L)
     for _ in range(2):
-        fit = selection.refit(_reweighted(fit, kind), fit.model.lam, fit.model.L)
+        fit = selection.refit(_reweighted(fit, kind), fit.lam, fit.L)
     while True:
-        last = selection.refit(fit, fit.model.lam, fit.model.L, fine=True)
+        last = selection.refit(fit, fit.lam, fit.L, fine=True)
         fit, gain = selection.backward(last, modes)
         if fit is last:
             break
@@ -143,7 +132,7 @@ def _reweighted(fit: Fit, kind: str) -> Fit:
         weight = task.weight / np.where(factor > 0, factor, 1.0)
     else:
         weight = np.where(used, 1 / fitted_variance(raw, np.where(used, H, np.nan)), 0.0)
-    return replace(fit, task=replace(task, weight=weight))
+    return fit.of(replace(task, weight=weight))
 
 
 def _result(
@@ -161,8 +150,8 @@ def _result(
     fit = selection.paired(apart)
     task, misfit, f = fit.task, residuals(fit), data.frequency
     estimates = mode_estimates(fit, misfit, omega)
-    for pair in map(list, fit.model.pairs):  # the data do not exclude the poles apart
-        of_pair = apart.model.lam[pair]
+    for pair in map(list, fit.pairs):  # the data do not exclude the poles apart
+        of_pair = apart.lam[pair]
         ratios = of_pair.real / np.abs(of_pair)
         splits = np.ptp(np.abs(of_pair)) * omega / (4 * np.pi), np.ptp(ratios) / 2
         for r in pair:
@@ -177,34 +166,34 @@ def _result(
             kept.append(k)
         else:
             rejected.append(Rejected(mode.frequency, mode.damping, why))
-    shares = stabilisation.support(diagram, fit.model.lam * omega, gain)
-    evidence = _evidence(fit, f, gain / selection.needed(task), shares, estimates, kept)
-    modes = [replace(estimates[k], evidence=evidence[k]) for k in kept]
-    terms = len(RESIDUALS) // 2
-    functions = FittedFunctions(data, fit.functions * size, misfit, terms)
+    shares = stabilisation.support(diagram, fit.lam * omega, gain)
+    judged = _judged(fit, f, gain / selection.needed(task), shares, estimates, kept)
     return Identification(
         data.responses,
         (float(f[0]), float(f[-1])),
-        tuple(sorted(modes, key=lambda mode: mode.frequency)),
+        tuple(sorted((judged[k] for k in kept), key=lambda mode: mode.frequency)),
         tuple(sorted(rejected, key=lambda pole: pole.frequency)),
         diagram,
-        functions,
+        data,
+        fit.functions * size,
+        misfit,
+        len(RESIDUALS) // 2,
         fit.evaluations,
         fit.converged,
     )
 
 
 # 6 arguments: what speaks for a mode, and its neighbours.
-def _evidence(
+def _judged(
     fit: Fit,
     frequency: Floats,
     gain: Floats,
     shares: Floats,
     estimates: Sequence[ModeEstimate],
     kept: Sequence[int],
-) -> list[Evidence]:
-    """Return what speaks for every mode; only those that are ``kept`` are neighbours."""
-    visible, alike = _visibility(fit), mac(fit.model.phi.T, fit.model.phi.T)
+) -> list[ModeEstimate]:
+    """Return all modes with what speaks for each; only those that are ``kept`` are neighbours."""
+    visible, alike = _visibility(fit), mac(fit.phi.T, fit.phi.T)
     spacing = float(np.median(np.diff(frequency)))
     out = []
     for r, mode in enumerate(estimates):
@@ -227,7 +216,7 @@ def _evidence(
                 continue
             if other.pole == mode.pole:
                 flags.append("one of a pair: both shapes are a basis of a plane")
-            elif len(fit.model.phi[r]) > 1 and alike[r, k] > selection.SAME:
+            elif len(fit.phi[r]) > 1 and alike[r, k] > selection.SAME:
                 flags.append(
                     f"shape of {other.frequency:.5g} Hz (MAC {alike[r, k]:.2f}): one peak split in "
                     "two, or sensors that cannot tell them apart"
@@ -237,17 +226,18 @@ def _evidence(
                     f"within the half bandwidth of {other.frequency:.5g} Hz: one peak split in "
                     "two, or two modes that one reference cannot tell apart"
                 )
-        out.append(Evidence(float(gain[r]), float(shares[r]), float(visible[r]), tuple(flags)))
+        g, share, seen = float(gain[r]), float(shares[r]), float(visible[r])
+        flagged = replace(mode, gain=g, support=share, visibility=seen, flags=tuple(flags))
+        out.append(flagged)
     return out
 
 
 def _visibility(fit: Fit) -> Floats:
     """Return the greatest share of every mode, over all functions, at its own frequency."""
-    task, model = fit.task, fit.model
-    resonances = replace(task, s=1j * np.abs(model.lam) + task.s[0].real)
-    E = primitives(resonances, model.lam, squares=False)[: 2 * len(model)]
-    a = (model.L.T[:, None, :] * model.phi.T)[task.weight.any(axis=2)]  # (functions, modes)
+    task = fit.task
+    resonances = replace(task, s=1j * np.abs(fit.lam) + task.s[0].real)
+    E = primitives(resonances, fit.lam, squares=False)[: 2 * len(fit.lam)]
+    a = (fit.L.T[:, None, :] * fit.phi.T)[task.weight.any(axis=2)]  # (functions, modes)
     parts = np.abs(a.real[..., None] * E[::2] + a.imag[..., None] * E[1::2])
     shares = parts / np.maximum(parts.sum(axis=1, keepdims=True), TINY)
-    out: Floats = np.einsum("irr->ir", shares).max(axis=0, initial=0.0)
-    return out
+    return np.einsum("irr->ir", shares).max(axis=0, initial=0.0)
