@@ -227,9 +227,11 @@ def show(
 
     data = read_dataset(directory)
     if figures:
-        from modefront.plots import pictures, write_figures
+        from modefront.plots import figures as figures_of
+        from modefront.plots import write_figures
 
-        for path in write_figures(pictures(data), directory / "figures", picture):
+        named = figures_of("quantities", data)
+        for path in write_figures(named, directory / "figures", picture):
             say(f"wrote {path}", err=form == "json")
     if form == "json":
         print(as_json(data))
