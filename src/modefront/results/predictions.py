@@ -86,7 +86,9 @@ class PredictionRunner:
         check, unknown = prediction.kind.check, np.full(len(prediction.places), np.nan)
         variables = check.variables if check and method == "check" else prediction.kind.variables
         values = {
-            x.key: np.array([unknown if row is None else row[x.key] for row in rows])
+            x.key: np.reshape(
+                [unknown if row is None else row[x.key] for row in rows], (len(rows), unknown.size)
+            )
             for x in variables
         }
         return values, sum(row is None for row in rows)
@@ -167,7 +169,7 @@ class PredictionRunner:
         unknown = np.zeros(data.sizes[kind.dimension], dtype=np.bool_)
         for variable in kind.ranged:
             middle = data[variable.name].values[position(data)]
-            beside = _scaled(values[variable.key].reshape(m, 2, -1), variable)
+            beside = _scaled(values[variable.key].reshape(m, 2, middle.size), variable)
             S = stencil.slopes(_scaled(middle, variable), beside)
             S[~np.isfinite(S).all(axis=1)] = np.nan
             C = S @ S.T
