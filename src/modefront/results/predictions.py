@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from itertools import compress, product
 from pathlib import Path
-from typing import Any, Literal, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -23,7 +23,7 @@ from modefront.front.point import position, preferred
 from modefront.identifiability.combinations import ALL
 from modefront.models.base import full_of, is_reduced
 from modefront.optim.lexicographic import RANK
-from modefront.predictions import Prediction, PredictionKind, ResultVariable
+from modefront.predictions import NumericalCheck, Prediction, PredictionKind, ResultVariable
 from modefront.predictions.base import ATTRIBUTE, as_text, kinds_in
 from modefront.predictions.ranges import Sampled, extreme
 from modefront.residuals.problem import UpdatingProblem
@@ -70,7 +70,7 @@ class PredictionRunner:
         thetas: Floats,
         name: str,
         labels: Sequence[str] = (),
-        method: Literal["evaluate", "check"] = "evaluate",
+        check: NumericalCheck | None = None,
     ) -> tuple[dict[str, Floats], list[int]]:
         """Return the predictions of a kind at models (m, p), or their check with finer numerics.
 
@@ -82,9 +82,9 @@ class PredictionRunner:
             (name, i, hash_text(f"{theta.tolist()}")[:8]) for i, theta in enumerate(thetas, start=1)
         ]
         file, predictions = str(self.file) if labels else "", self.kinds[kind]
-        variables = kind.check.variables if kind.check and method == "check" else kind.variables
-        shape, failed = (len(thetas), predictions[-1][1].stop), []
-        values = {x.key: np.full(shape, np.nan) for x in variables}
+        method, failed = "check" if check else "evaluate", []
+        shape = len(thetas), predictions[-1][1].stop
+        values = {x.key: np.full(shape, np.nan) for x in (check or kind).variables}
         for each, own in predictions:
             tasks = [
                 self._task(each, part, _predicted, theta, method, file, part[-1])
@@ -149,11 +149,11 @@ class PredictionRunner:
                 values[f"{kind.dimension}_{name}"] = texts
             places = [place for each, _ in predictions for place in each.places]
             coordinates[kind.dimension] = places
-            if kind.check:
-                at = thetas[[best]], kind.check.name, [labels[best]]
-                checked, _ = self.at_models(kind, *at, "check")
-                values |= {x.name: checked[x.key][0] for x in kind.check.variables}
-                values[kind.check.label.name] = [labels[best]] * len(places)
+            if check := kind.check:
+                at = thetas[[best]], check.name, [labels[best]]
+                checked, _ = self.at_models(kind, *at, check)
+                values |= {x.name: checked[x.key][0] for x in check.variables}
+                values[check.label.name] = [labels[best]] * len(places)
         out = data.assign(described(values, self.kinds)).assign_coords(coordinates)
         return out.assign_attrs({ATTRIBUTE: as_text(self.kinds)})
 
@@ -292,7 +292,7 @@ def _predicted(
     prediction: Prediction,
     numbers: np.random.SeedSequence,
     theta: Floats,
-    method: Literal["evaluate", "check"] = "evaluate",
+    method: str = "evaluate",
     file: str = "",
     label: str = "",
 ) -> Arrays | None:
