@@ -30,7 +30,7 @@ def drawing() -> Iterator[None]:
         yield
 
 
-def figures(module: str, *arguments: object) -> "Iterator[tuple[str, Picture]]":
+def pictures(module: str, *arguments: object) -> "Iterator[tuple[str, Picture]]":
     """Yield names and figures of a module: ``quantities``, ``paper`` or ``identification``."""
     with drawing():
         yield from import_module(f"modefront.plots.{module}").figures(*arguments)
