@@ -108,16 +108,16 @@ class PredictionRunner:
         for each, own in self.kinds[kind]:
             of_models = {key: x[:, own] for key, x in values.items()}
             ends: list[End] = list(product(kind.ranged, (1.0, -1.0), range(len(each.places))))
-            # Ends share what is solved between points; over equivalent models each is work of its
-            # own.
+            # Ends share what is solved between points; over equivalent models each is a task.
             parts = [[end] for end in ends] if front.is_open else [ends]
             tasks = [
                 self._task(each, ("ends", k, mark), _ends, front, of_models, part)
                 for k, part in enumerate(parts, start=1)
             ]
             found = np.array([end for each in self.work.run(tasks) for end in each])
-            for key, rows in zip(out, found.reshape(len(out), 2, len(each.places)), strict=True):
-                out[key][:, own] = rows
+            rows = found.reshape(len(kind.ranged), 2, len(each.places))
+            for variable, row in zip(kind.ranged, rows, strict=True):
+                out[variable.key][:, own] = row
         return out
 
     def at_points(self, data: ArrayDataset, slack: float) -> ArrayDataset:
