@@ -92,8 +92,8 @@ class PredictionRunner:
             ]
             rows = self.work.run(tasks)
             for i, row in enumerate(rows):
-                for key in values if row is not None else ():
-                    values[key][i, own] = row[key]
+                for key in values:
+                    values[key][i, own] = np.nan if row is None else row[key]
             failed.append(sum(row is None for row in rows))
         return values, failed
 
