@@ -60,9 +60,8 @@ def figures(studies: Studies) -> Iterator[tuple[str, canvas.Picture]]:
         kinds = [x for _, data in studies for x in kinds_in(data) if x.dimension == dimension]
         if kinds:
             variable = kinds[0].ranged[0]
-            figure = _along(studies, partial(_predicted, variable=variable))
-            for axes in figure.axes:
-                axes.set_yscale("log" if variable.logarithmic else "linear")
+            scale = "log" if variable.logarithmic else "linear"
+            figure = _along(studies, partial(_predicted, variable=variable), scale=scale)
             figure.axes[0].set_ylabel(variable.key)
             yield f"figure-{number}", figure
 
@@ -110,13 +109,18 @@ def _planes(studies: Studies) -> canvas.Picture:
 
 
 def _along(
-    studies: Studies, curves: Callable[[Dataset], Curves], columns: int = canvas.COLUMNS
+    studies: Studies,
+    curves: Callable[[Dataset], Curves],
+    columns: int = canvas.COLUMNS,
+    scale: str = "linear",
 ) -> canvas.Picture:
     """Return a figure with a panel for each title, of values along the front of some studies."""
     known = [list(curves(data)) for _, data in studies]
     titles = dict.fromkeys(title for some in known for title, _ in some)
     figure, grid = canvas.panels(len(titles), columns)
     panels = dict(zip(titles, grid, strict=True))
+    for axes in grid:
+        axes.set_yscale(scale)  # before the legend is placed: axes that stay empty have limits then
     for k, (name, data) in enumerate(studies):
         front, pareto = front_points(data), data["pareto"].values
         x = np.full(pareto.size, np.nan)
