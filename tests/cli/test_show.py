@@ -95,6 +95,16 @@ def test_the_first_screen_sets_the_nominal_model_beside_the_reference_and_the_ed
     assert "hypervolume" in capsys.readouterr().out
 
 
+def test_no_deviation_is_shown_of_what_no_data_determine(
+    two: xr.Dataset, capsys: pytest.CaptureFixture[str]
+) -> None:
+    known = two.drop_vars("sample_theta")
+    print_results(known.assign(theta_std=xr.full_like(known["theta_std"], np.inf)))
+    lines = capsys.readouterr().out.splitlines()
+    (line,) = (x for x in lines if x.lstrip().startswith("k1 "))
+    assert "±" not in line
+
+
 def test_pairs_that_change_on_a_lattice_are_said_once(three: xr.Dataset) -> None:
     paired = three["paired_mode"].values.copy()
     front = np.flatnonzero(three["kind"].values == "front")

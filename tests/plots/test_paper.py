@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -22,13 +23,22 @@ def building(tmp_path_factory: pytest.TempPathFactory) -> Results:
     folder = tmp_path_factory.mktemp("c0")
     write_example("three-story-c0", folder)
     problem = mf.load(folder / "study.toml").problem
-    push = mf.PeakResponse("push", response="floor1", force="floor3", damping=0.02)
+    load: dict[str, Any] = {"response": "floor1", "force": "floor3", "damping": 0.02}
+    push = mf.PeakResponse("push", **load)
+    rare: dict[str, Any] = {
+        "density": 1e-9,
+        "sided": "two",
+        "levels": [1e3],
+        "duration": 1.0,
+        "samples": 10,
+    }
+    never = mf.Passage("never", **load, **rare, method="monte-carlo")
     return mf.solve(
         problem,
         points=6,
         search=SEARCH,
         identifiability=mf.Identifiability(models=0),
-        predictions=[push],
+        predictions=[push, never],
     )
 
 
@@ -37,7 +47,9 @@ def test_figures_show_all_studies(building: Results, tmp_path: Path) -> None:
     data = building.dataset
     studies = [("M0", data), ("again", data)]
     drawn = dict(figures(studies))
-    assert list(drawn) == [f"figure-{number}" for number in (2, 3, 4, 5, 6)]
+    assert list(drawn) == [f"figure-{number}" for number in range(2, 8)]
+    probabilities = data["failure_probability"].values
+    assert not probabilities.any(), "a figure without a point is drawn too"
     lines = {line.get_label(): line for line in drawn["figure-2"].axes[0].lines}
     front = (data["kind"].values == "front") & data["pareto"].values
     np.testing.assert_array_equal(

@@ -13,7 +13,8 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 import modefront as mf
-from modefront.plots import PLOTS, Plots, pictures, write_figures
+from modefront.plots import write_figures
+from modefront.plots.quantities import PLOTS, Plots, figures
 from modefront.results.results import Results
 
 SEARCH = mf.Search(doubt=0.5)
@@ -139,7 +140,7 @@ def test_what_results_do_not_hold_is_said(three: Results) -> None:
 
 
 def test_all_pictures_are_written(two: Results, tmp_path: Path) -> None:
-    paths = write_figures(pictures(two.dataset), tmp_path)
+    paths = write_figures(figures(two.dataset), tmp_path)
     assert {path.stem for path in paths} >= {*PLOTS, "frf-push"} - {"modes"}
     assert all(path.read_bytes().startswith(b"<?xml") for path in paths)
 
@@ -159,7 +160,7 @@ def test_the_file_of_a_picture_is_the_same_again(
 
 
 def test_every_picture_is_shown_by_notebooks(three: Results) -> None:
-    for _, figure in pictures(three.dataset):
+    for _, figure in figures(three.dataset):
         assert figure._repr_svg_().lstrip().startswith("<?xml")
 
 

@@ -318,6 +318,13 @@ def test_bounds_that_hold_hardly_any_of_the_posterior_end_with_a_statement() -> 
     assert "optimal-weights has no room for differences between bounds: see draws" in message
 
 
+def test_predictions_do_not_scatter_where_bounds_hold_all_parameters() -> None:
+    data = solved(problem_of(upper=0.5), [PEAK])
+    assert data["posterior_std"].values.tolist() == [0.0]
+    assert data["posterior_frf_peak_std"].values.tolist() == [0.0]
+    assert optimal(data)["frf_peak"].values == pytest.approx(float(peak(np.array(0.5))))
+
+
 def test_what_the_data_leave_open_is_said() -> None:
     """Shapes alone leave the scale of all stiffnesses open."""
     data = mf.modal_data(

@@ -18,7 +18,8 @@ from modefront.cli.main import main
 from modefront.errors import InputError, ModelError, UnfinishedError
 from modefront.models.base import Transfer
 from modefront.models.matrices import MatrixModel
-from modefront.plots import pictures, write_figures
+from modefront.plots import write_figures
+from modefront.plots.quantities import figures
 from modefront.predictions import Passage, PeakResponse
 from modefront.predictions.reliability import gaussian_response
 from modefront.results.files import read_dataset
@@ -370,8 +371,7 @@ def test_show_prints_and_draws_predictions(
     drawn = [path.read_bytes() for path in paths]
     assert all(b"</svg>" in content for content in drawn)
     assert [
-        p.read_bytes()
-        for p in write_figures(pictures(read_dataset(tmp_path / "results")), tmp_path)
+        p.read_bytes() for p in write_figures(figures(read_dataset(tmp_path / "results")), tmp_path)
     ] == drawn
 
     monkeypatch.setitem(sys.modules, "matplotlib", None)
@@ -382,13 +382,13 @@ def test_show_prints_and_draws_predictions(
 @pytest.mark.slow(4)
 def test_models_are_drawn_without_a_front_too(results: xr.Dataset, tmp_path: Path) -> None:
     single = results.isel(point=results["kind"].values != "front")
-    paths = write_figures(pictures(single), tmp_path)
+    paths = write_figures(figures(single), tmp_path)
     assert len(paths) == 14
     assert all(path.read_bytes().endswith(b"</svg>\n") for path in paths)
     plain = results.drop_dims(["frf", "failure", "range"])
-    names = [path.name for path in write_figures(pictures(plain), tmp_path / "plain")]
+    names = [path.name for path in write_figures(figures(plain), tmp_path / "plain")]
     assert names[:4] == ["front.svg", "parameters.svg", "frequencies.svg", "mac.svg"]
     assert not [name for name in names if name.startswith(("frf", "failure", "predictions"))]
     (tmp_path / "file").write_text("")
     with pytest.raises(InputError, match="a folder that can be written to"):
-        write_figures(pictures(plain), tmp_path / "file")
+        write_figures(figures(plain), tmp_path / "file")

@@ -35,10 +35,9 @@ def run_identify(
     found = bool(test.modes.data.modes)
     written = test.write(output) if found else []
     if figures is not None:
-        from modefront.plots import figures as figures_of
-        from modefront.plots import write_figures
+        from modefront.plots import pictures, write_figures
 
-        named = figures_of("identification", test.names, test.identified)
+        named = pictures("identification", test.names, test.identified)
         written += write_figures(named, figures)
     if report is not None:
         from modefront.reports.identification import write_identification

@@ -229,7 +229,8 @@ def show(
     if figures:
         from modefront.plots import pictures, write_figures
 
-        for path in write_figures(pictures(data), directory / "figures", picture):
+        named = pictures("quantities", data)
+        for path in write_figures(named, directory / "figures", picture):
             say(f"wrote {path}", err=form == "json")
     if form == "json":
         print(as_json(data))
@@ -272,12 +273,11 @@ def report(directories: tuple[Path, ...], output: Path | None, figures: Path | N
         say(f"wrote {path} ({path.stat().st_size / 1e6:.2f} MB): open it in a browser")
         say_next("export", directories[0])
         return
-    from modefront.plots import figures as figures_of
-    from modefront.plots import write_figures
+    from modefront.plots import pictures, write_figures
     from modefront.results.compare import read_together
 
     studies = [(data.attrs.get("study") or name, data) for name, data in read_together(directories)]
-    paths = write_figures(figures_of("paper", studies), figures)
+    paths = write_figures(pictures("paper", studies), figures)
     for path in paths:
         say(f"wrote {path}")
     for number, what in ((6, "peaks of the frequency response"), (7, "probabilities of failure")):

@@ -88,7 +88,7 @@ def _table(screen: Screen, data: Dataset, predictions: Sequence[list[str]] = ())
         rows.append([f"  {name}"])
         for i, value in enumerate(theta[:, j]):
             at = {-1: " min", 1: " max"}.get(int(bound[i, j]), "")
-            scatter = f" ± {std[j]:.2g}" * (i == best and np.isfinite(std[j]) and not at)
+            scatter = f" ± {std[j]:.2g}" * bool(i == best and np.isfinite(std[j]) and not at)
             rows[-1].append(f"{number(value, '#.4g').removesuffix('.')}{scatter}{at}")
     rows.append(["modes: error of the frequency in %, and MAC"])
     for r, mode in enumerate(data["mode"].values):

@@ -22,8 +22,12 @@ _Shape: TypeAlias = tuple[str, Floats, Floats, Floats]
 displacements (nodes, 3), of no nodes without geometry."""
 
 
-def modes(data: Dataset, *, point: str | int | None = None) -> Picture:
-    """Return a panel a mode of one model, the reference unless a point is given."""
+def modes(data: Dataset, point: str | int | None = None) -> Picture:
+    """Return the mode shapes of a model, the measured ones over them.
+
+    ``point`` is a label or a position from 0, the reference unless given. Raises KeyError for
+    an unknown label.
+    """
     i = position(data, point)
     shapes = [_shape(data, i, r) for r in range(data.sizes["mode"])]
     in_space = "node" in data and data.attrs.get("geometry") != "chain"

@@ -1,6 +1,7 @@
 """Figures 2 to 7 of Christodoulou et al. (2008, doi:10.1016/j.cma.2008.04.010)."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import partial
 from itertools import combinations
 
 import numpy as np
@@ -11,10 +12,10 @@ from modefront.datasets import Dataset
 from modefront.errors import Fault, refuse
 from modefront.front.point import front_points
 from modefront.plots import canvas
-from modefront.predictions.base import predictions_in
+from modefront.predictions.base import ResultVariable, kinds_in, predictions_in
 
 Studies = Sequence[tuple[str, Dataset]]  # results with a name each
-Curve = tuple[str, int, Floats]  # title of a panel, and values (points,) of a study, by its number
+Curves = Iterable[tuple[str, Floats]]  # titles of panels, and values (points,) of a study
 MARKERS = "os^Dv"  # marks of the studies, beside their colours
 
 WEIGHTED = ("equal-weights", "P", 8), ("optimal-weights", "*", 12)
@@ -41,23 +42,14 @@ def figures(studies: Studies) -> Iterator[tuple[str, canvas.Picture]]:
     refuse(faults)
     yield "figure-2", _fronts(studies)
     yield "figure-3", _planes(studies)
-    numbered = [(k, data) for k, (_, data) in enumerate(studies)]
-    curves = [
-        (x, k, data["theta"].values[:, j]) for j, x in enumerate(names) for k, data in numbered
-    ]
-    yield "figure-4", _along(studies, curves)
+    yield "figure-4", _along(studies, lambda data: zip(names, data["theta"].values.T, strict=True))
 
-    def error(data: Dataset) -> Floats:
-        return 100 * (data["frequency"].values / data["measured_frequency"].values - 1)
+    def fits(data: Dataset) -> Curves:
+        error = 100 * (data["frequency"].values / data["measured_frequency"].values - 1)
+        for title, values in (("mode", error), ("MAC", data["mac"].values)):
+            yield from zip([f"{title} {r}" for r in modes], values.T, strict=False)
 
-    curves = [
-        (f"{title} {number}", k, of(data)[:, r])
-        for title, of in (("mode", error), ("MAC", lambda data: data["mac"].values))
-        for r, number in enumerate(modes)
-        for k, data in numbered
-        if r < data.sizes["mode"]
-    ]
-    figure = _along(studies, curves, len(modes))
+    figure = _along(studies, fits, len(modes))
     for above, below in zip(figure.axes[: len(modes)], figure.axes[len(modes) :], strict=True):
         above.axhline(0, color="k", ls="--", lw=0.8)
         below.set_title("", loc="left")
@@ -65,24 +57,21 @@ def figures(studies: Studies) -> Iterator[tuple[str, canvas.Picture]]:
     figure.axes[len(modes)].set_ylabel("MAC")
     yield "figure-5", figure
     for number, dimension in ((6, "frf"), (7, "failure")):
-        quantities = [
-            (k, x)
-            for k, data in numbered
-            for each in predictions_in(data)
-            for x in each.quantities
-            if each.kind.dimension == dimension and x.variable == each.kind.ranged[0]
-        ]
-        if quantities:
-            variable = quantities[0][1].variable
-            least = 0.0 if variable.logarithmic else -np.inf
-            curves = [
-                (x.place, k, np.where(x.values > least, x.values, np.nan)) for k, x in quantities
-            ]
-            figure = _along(studies, curves)
-            for axes in figure.axes:
-                axes.set_yscale("log" if variable.logarithmic else "linear")
+        kinds = [x for _, data in studies for x in kinds_in(data) if x.dimension == dimension]
+        if kinds:
+            variable = kinds[0].ranged[0]
+            scale = "log" if variable.logarithmic else "linear"
+            figure = _along(studies, partial(_predicted, variable=variable), scale=scale)
             figure.axes[0].set_ylabel(variable.key)
             yield f"figure-{number}", figure
+
+
+def _predicted(data: Dataset, variable: ResultVariable) -> Curves:
+    """Yield places and values of a variable of predictions; NaN for no logarithm."""
+    least = 0.0 if variable.logarithmic else -np.inf
+    for x in (x for each in predictions_in(data) for x in each.quantities):
+        if x.variable == variable:
+            yield x.place, np.where(x.values > least, x.values, np.nan)
 
 
 def _fronts(studies: Studies) -> canvas.Picture:
@@ -120,21 +109,28 @@ def _planes(studies: Studies) -> canvas.Picture:
 
 
 def _along(
-    studies: Studies, curves: Sequence[Curve], columns: int = canvas.COLUMNS
+    studies: Studies,
+    curves: Callable[[Dataset], Curves],
+    columns: int = canvas.COLUMNS,
+    scale: str = "linear",
 ) -> canvas.Picture:
     """Return a figure with a panel for each title, of values along the front of some studies."""
-    titles = dict.fromkeys(title for title, *_ in curves)
+    known = [list(curves(data)) for _, data in studies]
+    titles = dict.fromkeys(title for some in known for title, _ in some)
     figure, grid = canvas.panels(len(titles), columns)
     panels = dict(zip(titles, grid, strict=True))
-    for title, k, values in curves:
-        axes, (name, data) = panels[title], studies[k]
-        axes.set_title(canvas.short(title), loc="left")
+    for axes in grid:
+        axes.set_yscale(scale)  # before the legend is placed: axes that stay empty have limits then
+    for k, (name, data) in enumerate(studies):
         front, pareto = front_points(data), data["pareto"].values
-        x, y = np.full(values.shape, np.nan), np.where(pareto, values, np.nan)[front]
+        x = np.full(pareto.size, np.nan)
         x[front] = np.arange(1, front.size + 1)
-        axes.plot(x[front], y, "-", color=canvas.colour_of(k), lw=0.8, alpha=0.6)
-        _front(axes, data, np.column_stack([x, values]), k, name, 3.5)
-        axes.set_xticks([1, *range(5, front.size + 1, 5)])
+        for title, values in known[k]:
+            axes, y = panels[title], np.where(pareto, values, np.nan)[front]
+            axes.set_title(canvas.short(title), loc="left")
+            axes.plot(x[front], y, "-", color=canvas.colour_of(k), lw=0.8, alpha=0.6)
+            _front(axes, data, np.column_stack([x, values]), k, name, 3.5)
+            axes.set_xticks([1, *range(5, front.size + 1, 5)])
     for axes in grid[-columns:]:
         axes.set_xlabel("point of the front")
     canvas.legend(figure, grid[0], "outside lower center", min(len(studies) + 2, 4))

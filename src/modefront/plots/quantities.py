@@ -1,7 +1,10 @@
 """The front in the space of errors, quantities along it, minima, their scatter, and predictions."""
 
-from collections.abc import Iterator, Sequence
-from typing import Any
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from functools import wraps
+from typing import Any, Concatenate, ParamSpec
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -10,9 +13,11 @@ from matplotlib.ticker import LogLocator, NullFormatter
 
 from modefront._typing import Bools, Floats
 from modefront.datasets import Dataset
+from modefront.errors import Fault, InputError
 from modefront.front.methods import METHODS
 from modefront.front.point import front_points, position, preferred
-from modefront.plots import canvas
+from modefront.plots import canvas, drawing
+from modefront.plots.modes import modes
 from modefront.predictions.base import RecordedPrediction, predictions_in
 from modefront.text import NAME
 
@@ -23,7 +28,7 @@ CORNER = 8  # parameters of which all pairs are drawn
 
 
 def front(data: Dataset, *, log: bool = False) -> canvas.Picture:
-    """Return the front in the space of errors, with logarithmic axes if ``log``."""
+    """Return the front in the space of errors; axes are logarithmic if ``log``."""
     error, groups = data["error"].values, data.sizes["group"]
     if log:
         error = np.maximum(error, 1e-4 * np.nanmax(error))
@@ -109,7 +114,7 @@ def _many(data: Dataset, error: Floats) -> canvas.Picture:
 
 
 def parameters(data: Dataset) -> canvas.Picture:
-    """Return a panel a parameter, with one standard deviation."""
+    """Return the parameters of all models, with standard deviations where they are known."""
     theta, bounds, std = data["theta"].values, data["bounds"].values, parameter_std(data)
 
     def mark(axes: Axes, j: int) -> None:
@@ -123,7 +128,7 @@ def parameters(data: Dataset) -> canvas.Picture:
 
 
 def frequencies(data: Dataset) -> canvas.Picture:
-    """Return a panel a mode with the measured frequency."""
+    """Return the frequencies of all models beside the measured ones."""
     f, measured = data["frequency"].values, data["measured_frequency"].values
 
     def mark(axes: Axes, r: int) -> None:
@@ -135,7 +140,7 @@ def frequencies(data: Dataset) -> canvas.Picture:
 
 
 def mac(data: Dataset) -> canvas.Picture:
-    """Return a panel a mode with MAC values."""
+    """Return the MAC values of all models."""
     values = data["mac"].values
     low, high = canvas.at_reference(data, values, _known(data, "posterior_mac_std"))
     return canvas.panels_along(data, values, _modes(data), (low, np.minimum(high, 1.0)), "MAC")
@@ -169,7 +174,7 @@ def unit_of(data: Dataset) -> tuple[Floats, str]:
 
 
 def minima(data: Dataset) -> canvas.Picture:
-    """Return a line a minimum across the parameters; thin lines are equivalent models."""
+    """Return all minima, and the models that fit equally well, as lines across the parameters."""
     names, (unit, title) = canvas.names_of(data, "parameter", 18), unit_of(data)
     figure, axes = canvas.single(max(5.6, 0.45 * len(names)), 3.6)
     x, of = np.arange(len(names)), list(map(str, data["minimum_of"].values))
@@ -195,7 +200,10 @@ def minima(data: Dataset) -> canvas.Picture:
 
 
 def uncertainty(data: Dataset) -> canvas.Picture:
-    """Return parameters with deviations, their correlation, and the front with its scatter."""
+    """Return the scatter of parameters and front by errors of the data.
+
+    That are parameters with deviations, their correlation, and the front with its scatter.
+    """
     covariance = None  # of the parameters at the reference
     if "posterior_covariance" in data:
         covariance = data["posterior_covariance"].values
@@ -350,12 +358,6 @@ def predictions(data: Dataset) -> canvas.Picture:
     return figure
 
 
-def figures(data: Dataset) -> Iterator[tuple[str, canvas.Picture]]:
-    """Yield a name and a picture of each prediction at all models."""
-    for each in predictions_in(data):
-        yield f"{each.kind.dimension} {each.name}", _page(data, each)
-
-
 def _page(data: Dataset, of: RecordedPrediction) -> canvas.Picture:
     """Return one prediction at all models: of its variables the first one with a range, if any.
 
@@ -382,3 +384,62 @@ def _page(data: Dataset, of: RecordedPrediction) -> canvas.Picture:
         figure = canvas.panels_along(data, values, places, bars, variable.title)
     figure.suptitle(canvas.short(of.name + f" ({of.load})" * bool(of.load)), x=0.01, ha="left")
     return figure
+
+
+S = ParamSpec("S")
+
+PLOTS = (
+    *("front", "parameters", "frequencies", "mac"),
+    *("modes", "predictions", "uncertainty", "corner", "minima"),
+)
+"""Pictures in the order of their files."""
+
+
+def _method(
+    draw: Callable[Concatenate[Dataset, S], canvas.Picture], what: str = "", *needed: str
+) -> "Callable[Concatenate[Plots, S], canvas.Picture]":
+    """Return a method that draws in the style of all pictures.
+
+    Results hold ``what`` it shows if they have any of the variables ``needed``.
+    """
+
+    @wraps(draw)
+    def method(self: "Plots", /, *arguments: S.args, **options: S.kwargs) -> canvas.Picture:
+        with drawing():
+            if needed and not any(name in self.data for name in needed):
+                place = f"plot of {draw.__name__}"
+                raise InputError(Fault("", place, f"results with {what}", "none"))
+            return draw(self.data, *arguments, **options)
+
+    return method
+
+
+@dataclass(frozen=True)
+class Plots:
+    """Pictures of results; each method returns a figure of matplotlib, with ``savefig``.
+
+    All raise InputError without matplotlib, and where the results do not hold what is drawn.
+    """
+
+    data: Dataset  # the results
+
+    front = _method(front)
+    parameters = _method(parameters)
+    frequencies = _method(frequencies)
+    mac = _method(mac)
+    modes = _method(modes, "mode shapes", "shape")
+    predictions = _method(predictions, "predictions", "frequency_range")
+    uncertainty = _method(
+        uncertainty, "errors of the data or a posterior", "theta_std", "posterior_std"
+    )
+    corner = _method(corner, "draws of a posterior", "sample_theta")
+    minima = _method(minima)
+
+
+def figures(data: Dataset) -> Iterator[tuple[str, canvas.Picture]]:
+    """Yield name and figure of everything that the results hold, each prediction by itself."""
+    for name in PLOTS:
+        with suppress(InputError):
+            yield name, getattr(Plots(data), name)()
+            for each in predictions_in(data) if name == "predictions" else ():
+                yield f"{each.kind.dimension} {each.name}", _page(data, each)

@@ -324,15 +324,9 @@ def kinds_in(data: Dataset) -> tuple[PredictionKind, ...]:
 @cache
 def _kinds(text: str) -> tuple[PredictionKind, ...]:
     """Return kinds from JSON, as `as_text` makes it."""
-    kinds = json.loads(text)
-    for values in kinds:
-        values["variables"] = tuple(ResultVariable(**x) for x in values["variables"])
-        values["settings"] = tuple(Setting(**x) for x in values["settings"])
-        if check := values["check"]:
-            variables = tuple(ResultVariable(**x) for x in check["variables"])
-            label = ResultVariable(**check["label"])
-            values["check"] = NumericalCheck(check["name"], variables, label)
-    return tuple(PredictionKind(**values) for values in kinds)
+    records: Sequence[Any] = (ResultVariable, Setting, NumericalCheck, PredictionKind)
+    known = {frozenset(x.__dataclass_fields__): x for x in records}  # told by names of fields
+    return tuple(json.loads(text, object_hook=lambda values: known[frozenset(values)](**values)))
 
 
 @dataclass(frozen=True)
@@ -350,19 +344,16 @@ class Quantity:
     drawn: Mapping[str, float]  # statistics over draws from the posterior, by name; none without
 
 
-def quantity(
-    data: Dataset, variable: ResultVariable, i: int, of: str = "", log_std: str = ""
-) -> Quantity:
-    """Return the i-th column of a variable of results, ``of`` a prediction.
-
-    ``log_std`` names the variable with the standard deviation of its logarithm.
-    """
+def quantity(data: Dataset, variable: ResultVariable, i: int, of: str = "") -> Quantity:
+    """Return the i-th column of a variable of results, ``of`` a prediction."""
     name, values = variable.name, data[variable.name]
-    label = str(data[values.dims[1]].values[i])
+    dimension = values.dims[1]
+    label = str(data[dimension].values[i])
+    scattered = f"{dimension}_log" if variable.logarithmic else name
     extent, std, drawn = np.full(3, np.nan), None, {}
     if variable.ranged:
         extent = data[f"{name}_range"].values[:, i]
-        if (deviations := data.variables.get(log_std or f"posterior_{name}_std")) is not None:
+        if (deviations := data.variables.get(f"posterior_{scattered}_std")) is not None:
             std = float(deviations.values[i])
         if (statistics := data.variables.get(f"posterior_{name}")) is not None:
             of_draws = zip(data["statistic"].values, statistics.values[:, i], strict=True)
@@ -391,9 +382,7 @@ def predictions_in(data: Dataset) -> Iterator[RecordedPrediction]:
         for name in dict.fromkeys(names):
             positions = tuple(i for i, each in enumerate(names) if each == name)
             quantities = tuple(
-                quantity(data, x, i, name, f"posterior_{start}_log_std" * x.logarithmic)
-                for i in positions
-                for x in kind.variables
+                quantity(data, x, i, name) for i in positions for x in kind.variables
             )
             heading = str(data[f"{start}_heading"].values[positions[0]])
             loaded = "" if load is None else str(load.values[positions[0]])

@@ -31,10 +31,10 @@ and its size follows from the problem alone, so who computes it changes nothing.
 
 import math
 import os
+import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from queue import SimpleQueue
 from typing import Final, final
 
 import numpy as np
@@ -293,23 +293,21 @@ def estimate(
     largest = LARGEST_BLOCK // math.prod(response.load)
     chunk = min(max(largest, 1), LARGEST_CHUNK)
     workers = workers or min(os.cpu_count() or 1, MOST_WORKERS)
-    free: SimpleQueue[Convolution] = SimpleQueue()
-    for _ in range(workers):
-        free.put(Convolution(response, chunk))
+    own = threading.local()  # a convolution for each thread
+
+    def begin() -> None:
+        own.convolution = Convolution(response, chunk)
 
     def weights_of(number: int) -> Floats:
         count = min(chunk, samples - number * chunk)
-        rng, convolution = np.random.default_rng(spawn(seed, number)), free.get()
+        rng = np.random.default_rng(spawn(seed, number))
         z = rng.standard_normal((count, *response.load))
-        try:
-            if method is not None:
-                return _given_failures(method, levels, sums, convolution, z, rng)
-            greatest = np.max([x.max(axis=1) for x in convolution.magnitudes(z)], axis=0)
-            return (greatest > levels[:, None]).astype(np.float64)
-        finally:
-            free.put(convolution)
+        if method is not None:
+            return _given_failures(method, levels, sums, own.convolution, z, rng)
+        greatest = np.max([x.max(axis=1) for x in own.convolution.magnitudes(z)], axis=0)
+        return (greatest > levels[:, None]).astype(np.float64)
 
-    with ThreadPoolExecutor(workers) as pool:
+    with ThreadPoolExecutor(workers, initializer=begin) as pool:
         chunks = pool.map(weights_of, range(-(-samples // chunk)))
         weights = np.concatenate(list(chunks), axis=1)
     P = weights.mean(axis=1)

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from itertools import compress, product
 from pathlib import Path
-from typing import Any, Literal, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -23,7 +23,7 @@ from modefront.front.point import position, preferred
 from modefront.identifiability.combinations import ALL
 from modefront.models.base import full_of, is_reduced
 from modefront.optim.lexicographic import RANK
-from modefront.predictions import Prediction, PredictionKind, ResultVariable
+from modefront.predictions import NumericalCheck, Prediction, PredictionKind, ResultVariable
 from modefront.predictions.base import ATTRIBUTE, as_text, kinds_in
 from modefront.predictions.ranges import Sampled, extreme
 from modefront.residuals.problem import UpdatingProblem
@@ -55,60 +55,70 @@ class PredictionRunner:
     file: Path  # of the study, named in messages
 
     @property
-    def kinds(self) -> dict[PredictionKind, list[Prediction]]:
-        """The predictions of each kind."""
-        kinds = dict.fromkeys(each.kind for each in self.predictions)
-        return {kind: [x for x in self.predictions if x.kind == kind] for kind in kinds}
+    def kinds(self) -> dict[PredictionKind, list[tuple[Prediction, slice]]]:
+        """The predictions of each kind, with the places of each along its dimension."""
+        out: dict[PredictionKind, list[tuple[Prediction, slice]]] = {}
+        for each in self.predictions:
+            known = out.setdefault(each.kind, [])
+            first = sum(len(x.places) for x, _ in known)
+            known.append((each, slice(first, first + len(each.places))))
+        return out
 
     def at_models(
         self,
-        prediction: Prediction,
+        kind: PredictionKind,
         thetas: Floats,
         name: str,
         labels: Sequence[str] = (),
-        method: Literal["evaluate", "check"] = "evaluate",
-    ) -> tuple[dict[str, Floats], int]:
-        """Return a prediction at models (m, p), or the kind's comparison with finer numerics.
+        check: NumericalCheck | None = None,
+    ) -> tuple[dict[str, Floats], list[int]]:
+        """Return the predictions of a kind at models (m, p), or their check with finer numerics.
 
         Values are (m, places) by key. Models with ``labels`` raise InputError where an option does
         not suit them, and UnfinishedError where they have not the modes that are needed; others
-        have NaN then, and are counted.
+        have NaN then, and are counted for each prediction.
         """
         parts: list[Key] = [(name, label) for label in labels] or [
             (name, i, hash_text(f"{theta.tolist()}")[:8]) for i, theta in enumerate(thetas, start=1)
         ]
-        file = str(self.file) if labels else ""
-        tasks = [
-            self._task(prediction, part, _predicted, theta, method, file, part[-1])
-            for part, theta in zip(parts, thetas, strict=True)
-        ]
-        rows = self.work.run(tasks)
-        check, unknown = prediction.kind.check, np.full(len(prediction.places), np.nan)
-        variables = check.variables if check and method == "check" else prediction.kind.variables
-        values = {
-            x.key: np.array([unknown if row is None else row[x.key] for row in rows])
-            for x in variables
-        }
-        return values, sum(row is None for row in rows)
+        file, predictions = str(self.file) if labels else "", self.kinds[kind]
+        method, failed = "check" if check else "evaluate", []
+        shape = len(thetas), predictions[-1][1].stop
+        values = {x.key: np.full(shape, np.nan) for x in (check or kind).variables}
+        for each, own in predictions:
+            tasks = [
+                self._task(each, part, _predicted, theta, method, file, part[-1])
+                for part, theta in zip(parts, thetas, strict=True)
+            ]
+            rows = self.work.run(tasks)
+            for i, row in enumerate(rows):
+                for key in values:
+                    values[key][i, own] = np.nan if row is None else row[key]
+            failed.append(sum(row is None for row in rows))
+        return values, failed
 
-    def extremes(self, prediction: Prediction, front: Sampled, values: Arrays) -> dict[str, Floats]:
+    def extremes(self, kind: PredictionKind, front: Sampled, values: Arrays) -> dict[str, Floats]:
         """Return least and greatest values over a front, and over all models that are equivalent.
 
         ``values`` (m, places) are those of its m models by key. The ends have the shape
         (2, places), by the key of each variable of which the range is reported.
         """
         mark = hash_text(f"{front.theta.tolist()} {front.is_open} {front.slack}")[:8]
-        ranged, count = prediction.kind.ranged, len(prediction.places)
-        ends: list[End] = list(product(ranged, (1.0, -1.0), range(count)))
-        # Ends share what is solved between points; over equivalent models each is work of its own.
-        parts = [[end] for end in ends] if front.is_open else [ends]
-        tasks = [
-            self._task(prediction, ("ends", k, mark), _ends, front, values, part)
-            for k, part in enumerate(parts, start=1)
-        ]
-        found = np.array([end for each in self.work.run(tasks) for end in each])
-        rows = found.reshape(len(ranged), 2, count)
-        return dict(zip((variable.key for variable in ranged), rows, strict=True))
+        out = {x.key: np.empty((2, values[x.key].shape[1])) for x in kind.ranged}
+        for each, own in self.kinds[kind]:
+            of_models = {key: x[:, own] for key, x in values.items()}
+            ends: list[End] = list(product(kind.ranged, (1.0, -1.0), range(len(each.places))))
+            # Ends share what is solved between points; over equivalent models each is a task.
+            parts = [[end] for end in ends] if front.is_open else [ends]
+            tasks = [
+                self._task(each, ("ends", k, mark), _ends, front, of_models, part)
+                for k, part in enumerate(parts, start=1)
+            ]
+            found = np.array([end for each in self.work.run(tasks) for end in each])
+            rows = found.reshape(len(kind.ranged), 2, len(each.places))
+            for variable, row in zip(kind.ranged, rows, strict=True):
+                out[variable.key][:, own] = row
+        return out
 
     def at_points(self, data: ArrayDataset, slack: float) -> ArrayDataset:
         """Return results with the predictions of every point."""
@@ -125,31 +135,25 @@ class PredictionRunner:
             thetas[optimal], data["objective"].values[optimal], slack > 0 or bool(is_open), slack
         )
         for kind, predictions in self.kinds.items():
-            rows = [self.at_models(each, thetas, "point", labels)[0] for each in predictions]
-            ends = [
-                self.extremes(each, front, {key: x[optimal] for key, x in row.items()})
-                for each, row in zip(predictions, rows, strict=True)
-            ]
-            of_points, of_ends = _beside(rows), _beside(ends)
-            for variable in kind.variables:
-                values[variable.name] = of_points[variable.key]
-            for variable in kind.ranged:
+            of_points, _ = self.at_models(kind, thetas, "point", labels)
+            values |= {x.name: of_points[x.key] for x in kind.variables}
+            of_optimal = {key: x[optimal] for key, x in of_points.items()}
+            of_ends = self.extremes(kind, front, of_optimal)
+            for x in kind.ranged:
                 # Over the optimal points, and between and beside these over all equivalent ones.
-                over = np.vstack([of_points[variable.key][optimal], of_ends[variable.key]])
-                values[f"{variable.name}_range"] = _range(over)
+                values[f"{x.name}_range"] = _range(np.vstack([of_optimal[x.key], of_ends[x.key]]))
             for setting in kind.settings:
-                values[setting.name] = [x for y in predictions for x in y.settings[setting.name]]
+                values[setting.name] = [x for y, _ in predictions for x in y.settings[setting.name]]
             for name in ("name", "heading"):
-                texts = [getattr(each, name) for each in predictions for _ in each.places]
+                texts = [getattr(each, name) for each, _ in predictions for _ in each.places]
                 values[f"{kind.dimension}_{name}"] = texts
-            coordinates[kind.dimension] = [place for each in predictions for place in each.places]
-            if kind.check:
-                at = thetas[[best]], kind.check.name, [labels[best]]
-                compared = [self.at_models(each, *at, "check")[0] for each in predictions]
-                checked = _beside(compared)
-                for variable in kind.check.variables:
-                    values[variable.name] = checked[variable.key][0]
-                values[kind.check.label.name] = [labels[best]] * len(coordinates[kind.dimension])
+            places = [place for each, _ in predictions for place in each.places]
+            coordinates[kind.dimension] = places
+            if check := kind.check:
+                at = thetas[[best]], check.name, [labels[best]]
+                checked, _ = self.at_models(kind, *at, check)
+                values |= {x.name: checked[x.key][0] for x in check.variables}
+                values[check.label.name] = [labels[best]] * len(places)
         out = data.assign(described(values, self.kinds)).assign_coords(coordinates)
         return out.assign_attrs({ATTRIBUTE: as_text(self.kinds)})
 
@@ -161,13 +165,12 @@ class PredictionRunner:
         What limits them is added to ``limits``.
         """
         m, _, p = stencil.theta.shape
-        thetas = stencil.theta.reshape(2 * m, p)
-        values = _beside([self.at_models(each, thetas, "axis")[0] for each in self.kinds[kind]])
+        values, _ = self.at_models(kind, stencil.theta.reshape(2 * m, p), "axis")
         out: Values = {}
         unknown = np.zeros(data.sizes[kind.dimension], dtype=np.bool_)
         for variable in kind.ranged:
             middle = data[variable.name].values[position(data)]
-            beside = _scaled(values[variable.key].reshape(m, 2, -1), variable)
+            beside = _scaled(values[variable.key].reshape(m, 2, middle.size), variable)
             S = stencil.slopes(_scaled(middle, variable), beside)
             S[~np.isfinite(S).all(axis=1)] = np.nan
             C = S @ S.T
@@ -189,18 +192,17 @@ class PredictionRunner:
     ) -> Values:
         """Return values at draws and their statistics; what limits them is added to ``limits``."""
         first, predictions = kind.variables[0], self.kinds[kind]
-        of_each = [self.at_models(each, samples, "draw") for each in predictions]
-        values, failed = _beside([x for x, _ in of_each]), [count for _, count in of_each]
+        values, failed = self.at_models(kind, samples, "draw")
         out: Values = {}
         for variable in kind.ranged:
             out[f"draw_{variable.name}"] = values[variable.key]
             out[f"posterior_{variable.name}"] = spread.summary(values[variable.key])
         missing = np.isnan(values[first.key]).sum(axis=0)
-        missing -= np.repeat(failed, [len(each.places) for each in predictions])
+        lacking = []
+        for (each, own), n in zip(predictions, failed, strict=True):
+            missing[own] -= n
+            lacking.append((each.name, n, "cannot be solved"))
         missing[np.isnan(data[first.name].values[position(data)])] = 0
-        lacking = [
-            (each.name, n, "cannot be solved") for each, n in zip(predictions, failed, strict=True)
-        ]
         lacking += [
             (str(name), n, kind.absent)
             for name, n in zip(data[kind.dimension].values, missing.tolist(), strict=True)
@@ -290,7 +292,7 @@ def _predicted(
     prediction: Prediction,
     numbers: np.random.SeedSequence,
     theta: Floats,
-    method: Literal["evaluate", "check"] = "evaluate",
+    method: str = "evaluate",
     file: str = "",
     label: str = "",
 ) -> Arrays | None:
@@ -356,8 +358,3 @@ def _range(values: Floats) -> Floats:
     least, greatest = (of.reduce(known, axis=0, initial=np.nan) for of in (np.fmin, np.fmax))
     ratio = np.divide(greatest, least, out=np.full(least.shape, np.nan), where=least > 0)
     return np.array([least, greatest, ratio])
-
-
-def _beside(rows: Sequence[Arrays]) -> dict[str, Floats]:
-    """Return values of predictions of a kind side by side, by their keys."""
-    return {key: np.hstack([row[key] for row in rows]) for key in rows[0]}

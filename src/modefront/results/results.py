@@ -20,7 +20,7 @@ from modefront.findings.record import Finding
 from modefront.front.point import Kind, front_points, position, preferred
 from modefront.models.base import matrices_at
 from modefront.models.matrices import MatrixModel
-from modefront.plots import Plots
+from modefront.plots import drawing
 from modefront.residuals.problem import UpdatingProblem
 from modefront.results.files import read_dataset
 from modefront.results.remarks import findings_of, verdict
@@ -30,6 +30,8 @@ from modefront.text import Shown
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
+
+    from modefront.plots.quantities import Plots
 
 SHOWN = (Kind.NOMINAL, Kind.MOST_PROBABLE, Kind.OPTIMAL, Kind.EQUAL, Kind.EDGE)
 """Kinds of models in the short representation, in its order."""
@@ -158,8 +160,14 @@ class Results(Shown):
 
     @property
     def plot(self) -> Plots:
-        """Pictures: ``plot.front()``, ``plot.parameters()`` and so on, see `Plots`."""
-        return Plots(self.data)
+        """Pictures: ``plot.front()``, ``plot.parameters()`` and so on, see `Plots`.
+
+        Raises InputError without matplotlib.
+        """
+        with drawing():
+            from modefront.plots.quantities import Plots
+
+            return Plots(self.data)
 
     @property
     def front(self) -> xr.Dataset:
