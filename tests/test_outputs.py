@@ -18,6 +18,8 @@ from modefront.outputs import output, output_by_name, remove_unfinished, write_t
 from modefront.work.store import Store
 from modefront.work.task import Costs, Task
 
+pytestmark = pytest.mark.usefixtures("short_chains")
+
 SOURCE = Path(modefront.__file__).parent
 
 METHODS = {"write_text", "write_bytes", "touch", "symlink_to", "hardlink_to", "tofile", "truncate"}

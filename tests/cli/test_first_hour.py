@@ -9,6 +9,8 @@ from pathlib import Path
 import pytest
 from refusals import command
 
+pytestmark = pytest.mark.usefixtures("short_chains")
+
 README = Path(__file__).parents[2] / "README.md"
 
 

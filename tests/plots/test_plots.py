@@ -16,6 +16,8 @@ import modefront as mf
 from modefront.plots import PLOTS, Plots, pictures, write_figures
 from modefront.results.results import Results
 
+pytestmark = pytest.mark.usefixtures("short_chains")
+
 SEARCH = mf.Search(doubt=0.5)
 OPEN = mf.Identifiability(models=0)
 FREQUENCIES, SHAPES = mf.Group("freq $x$", frequency="all"), mf.Group("shapes", shape="all")

@@ -22,6 +22,8 @@ from modefront.reports.page import page, topics
 from modefront.results.files import FILE, write
 from modefront.results.shapes import drawing, mode_shapes
 
+pytestmark = pytest.mark.usefixtures("short_chains")
+
 MEGABYTE = 1e6
 REPORT = ROOT / "report"
 PACKAGE = ROOT / "src" / "modefront" / "reports"

@@ -98,11 +98,13 @@ def test_a_moving_base_is_the_force_of_inertia(results: xr.Dataset) -> None:
         assert first.values == pytest.approx(other.values, rel=1e-12)
 
 
+@pytest.mark.slow(1)
 def test_a_band_without_a_peak_is_said_to_have_none(results: xr.Dataset) -> None:
     assert np.isnan(results["frf_peak"].sel(frf="between: low")).all()
     assert np.isnan(results["frf_peak_range"].sel(frf="between: low")).all()
 
 
+@pytest.mark.slow(1)
 def test_ranges_are_those_of_the_front_and_not_of_its_points(results: xr.Dataset) -> None:
     """Of these three points no one is near the least probability, which is within the front."""
     optimal = results.isel(point=results["pareto"].values)
@@ -148,6 +150,7 @@ def monte_carlo(theta: Floats, dt: float, samples: int, seed: int) -> Floats:
     return out
 
 
+@pytest.mark.slow(1)
 def test_drift_probabilities_are_those_of_an_own_monte_carlo(results: xr.Dataset) -> None:
     samples = 1500
     for position in (0, results["kind"].values.tolist().index("optimal-weights")):
@@ -162,6 +165,7 @@ def test_drift_probabilities_are_those_of_an_own_monte_carlo(results: xr.Dataset
             assert abs(P - counted) < 4 * np.hypot(error, chosen)
 
 
+@pytest.mark.slow(1)
 def test_what_a_probability_depends_on_is_told_with_it(results: xr.Dataset) -> None:
     reported = {
         "level": [0.02, 0.025],
@@ -221,6 +225,7 @@ def test_other_predictions_do_no_old_work_again(
     assert len(written) == evaluated
 
 
+@pytest.mark.slow(1)
 def test_eigenproblems_of_predictions_are_counted(results: xr.Dataset, tmp_path: Path) -> None:
     plain = run(tmp_path, "")
     predictions = 5 + 1

@@ -30,6 +30,8 @@ from modefront.results.assemble import lattice_values
 from modefront.results.remarks import findings_of
 from modefront.study.examples import write_example
 
+pytestmark = pytest.mark.usefixtures("short_chains")
+
 
 def on_a_line(theta: Floats) -> tuple[Floats, Floats, Floats]:
     """Squared distances from (0, 0), (1, 0) and (2, 0): the front is a curve, not a surface."""
