@@ -202,7 +202,7 @@ def test_windows_without_records_and_a_mixture_are_errors(tmp_path: Path) -> Non
 def test_damping_of_windowed_functions_is_that_of_the_structure(tmp_path: Path) -> None:
     tau = 1.0
     files = []
-    for j in range(3):
+    for j in (1, 2):
         for blow in range(3):
             time, force, y = _records(j, 10 * j + blow)
             spectra = np.fft.rfft(np.vstack([force, y]) * np.exp(-time / tau))

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 import xarray as xr
 from interruptions import interrupt_at
+from refusals import command
 from scipy.signal import lsim
 from two_masses import FRF, MASSES, PASSAGE, QUICK, ZETA, direct, matrices, run, write_study
 
 import modefront as mf
 from modefront._typing import Floats
-from modefront.cli.main import main
 from modefront.errors import InputError, ModelError, UnfinishedError
 from modefront.models.base import Transfer
 from modefront.models.matrices import MatrixModel
@@ -332,18 +332,6 @@ def test_outputs_of_a_mesh(tmp_path: Path) -> None:
     # One mode of displacement: its participation 1.2 to 1.3, 1 / (2 zeta omega^2) of the base's.
     amplitude = result["peak"][0] * 2 * 0.02 * (2 * np.pi * first) ** 2
     assert 1.15 < amplitude < 1.35
-
-
-def command(*arguments: object) -> int:
-    before = sys.argv
-    sys.argv = ["modefront", *map(str, arguments)]
-    try:
-        with pytest.raises(SystemExit) as left:
-            main()
-    finally:
-        sys.argv = before
-    assert isinstance(left.value.code, int)
-    return left.value.code
 
 
 @pytest.mark.slow(4)
