@@ -99,6 +99,7 @@ def test_wrong_input_is_named(tmp_path: Path, arguments: list[str], message: str
         _invoke(tmp_path / "test-m0.toml", *arguments)
 
 
+@pytest.mark.slow(5)
 def test_modes_are_chosen_by_hand(tmp_path: Path) -> None:
     write("hammer-test", tmp_path)
     test, output = tmp_path / "test-m0.toml", tmp_path / "o.csv"

@@ -355,6 +355,7 @@ def test_what_overlaps_too_much_is_parted_between_the_modes_that_do_least() -> N
     assert sorted(len(group) for group in _overlapping(modes, 1.0)) == [2, 2, 2]
 
 
+@pytest.mark.slow(4)
 def test_noise_alone_has_no_modes() -> None:
     rng = np.random.default_rng(5)
     records = Records("noise", ("a", "b", "c"), 10.0, rng.standard_normal((3, 4000)))

@@ -49,9 +49,10 @@ def _blows(folder: Path, blows: int = 3) -> tuple[list[str], list[str]]:
     return files, references
 
 
-@pytest.mark.parametrize(
-    "windows", ["", '[impact]\nestimator = "Hv"\nforce_window = 0.1\nexponential = 1.5']
-)
+WINDOWS = '[impact]\nestimator = "Hv"\nforce_window = 0.1\nexponential = 1.5'
+
+
+@pytest.mark.parametrize("windows", ["", pytest.param(WINDOWS, marks=pytest.mark.slow(4))])
 def test_records_in_csv_give_the_modes_without_the_damping_of_the_window(
     tmp_path: Path, windows: str
 ) -> None:
@@ -199,6 +200,7 @@ def test_windows_without_records_and_a_mixture_are_errors(tmp_path: Path) -> Non
         read_test(_test_file(tmp_path, ["f.csv"], ["a"], '[impact]\nestimator = "H2"'))
 
 
+@pytest.mark.slow(3)
 def test_damping_of_windowed_functions_is_that_of_the_structure(tmp_path: Path) -> None:
     tau = 1.0
     files = []

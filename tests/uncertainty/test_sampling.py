@@ -353,7 +353,10 @@ def test_derivatives_beyond_all_bounds_leave_a_peak() -> None:
     assert np.linalg.eigvalsh(peak.precision(np.ones(1))).min() > 0
 
 
-@pytest.mark.parametrize(("mean", "std", "count"), [(0.2, 0.2, 300), (0.9, 0.05, 50)])
+@pytest.mark.parametrize(
+    ("mean", "std", "count"),
+    [(0.2, 0.2, 300), pytest.param(0.9, 0.05, 50, marks=pytest.mark.slow(3))],
+)
 def test_draws_in_a_poor_basis_are_weighted(
     mean: float, std: float, count: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
