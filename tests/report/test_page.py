@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import hashlib
+import json
 import re
 from collections.abc import Callable
 from pathlib import Path
@@ -17,9 +18,10 @@ from refusals import command
 
 import modefront as mf
 from modefront.front.point import front_points
+from modefront.hdf5 import write_netcdf
 from modefront.models.base import geometry_of
 from modefront.reports.page import page, topics
-from modefront.results.files import FILE, write
+from modefront.results.files import CHECKSUM, FILE, checksums, write
 from modefront.results.shapes import drawing, mode_shapes
 
 pytestmark = pytest.mark.usefixtures("short_chains")
@@ -253,8 +255,9 @@ def test_results_that_were_damaged_are_refused(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     path = folder / "results" / FILE
-    whole = xr.load_dataset(path, engine="h5netcdf")
-    change(whole).to_netcdf(path, engine="h5netcdf")
+    whole = chain().assign_attrs({CHECKSUM: json.dumps(checksums(chain()))})
+    with path.open("w+b") as stream:
+        write_netcdf(change(whole), stream)
     assert command("report", folder / "results", "-o", folder / "a.html") == 2
     assert f"{folder / 'results' / FILE}: {says}: expected" in capsys.readouterr().err
     assert not (folder / "a.html").exists()
