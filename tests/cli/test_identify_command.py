@@ -68,6 +68,7 @@ def test_an_ambient_test_of_three_setups_is_one_set(tmp_path: Path) -> None:
     assert not any("records of more" in text for text in report["warnings"]), "they are short"
 
 
+@pytest.mark.slow(3)
 def test_universal_files_are_written(tmp_path: Path) -> None:
     pyuff = pytest.importorskip("pyuff")
     write("hammer-test", tmp_path)

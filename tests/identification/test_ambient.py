@@ -213,6 +213,7 @@ def _records(
     return phi, y + 0.02 * y.std() * rng.standard_normal(y.shape)
 
 
+@pytest.mark.slow(3)
 def test_close_modes_are_found_and_a_machine_is_none() -> None:
     phi, y = _records(np.random.default_rng(3), 15, machine=1.0)
     result = identify([Records("all", tuple("abcde"), RATE, y)], (1, 7))

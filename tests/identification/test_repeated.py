@@ -38,6 +38,7 @@ def identified(
     return identify(frequency_responses(F, blows(H, 0.03, rng)))
 
 
+@pytest.mark.slow(3)
 def test_repeated_modes_are_a_pair_with_deviations_from_their_plane() -> None:
     scores = []
     for seed in range(3):

@@ -134,6 +134,7 @@ def test_same_as_dense(size: int, seed: int, massless: float, free: bool, sensor
     agree(*both(K, M, theta, 3, rng.standard_normal((sensors, size))))
 
 
+@pytest.mark.slow(2)
 @given(st.integers(8, 40), st.integers(0, 10**6), st.sampled_from([0.0, 0.4]), st.booleans())
 def test_second_derivatives_are_those_of_all_modes(
     size: int, seed: int, massless: float, free: bool

@@ -147,6 +147,7 @@ def test_the_file_of_a_picture_is_the_same_again(
     assert first == again
 
 
+@pytest.mark.slow(3)
 def test_every_picture_is_shown_by_notebooks(three: Results) -> None:
     for _, figure in pictures(three.dataset):
         assert figure._repr_svg_().lstrip().startswith("<?xml")

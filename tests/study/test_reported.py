@@ -4,7 +4,6 @@ import json
 from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
 
 import numpy as np
 import pytest
@@ -29,8 +28,6 @@ from modefront.optim.sqp import Solution, Status, begin
 from modefront.results.assemble import lattice_values
 from modefront.results.remarks import findings_of
 from modefront.study.examples import write_example
-
-pytestmark = pytest.mark.usefixtures("short_chains")
 
 
 def on_a_line(theta: Floats) -> tuple[Floats, Floats, Floats]:
@@ -65,7 +62,7 @@ def c0() -> mf.UpdatingProblem:
         return mf.load(Path(folder) / "study.toml").problem
 
 
-def solved(**more: Any) -> xr.Dataset:
+def solved() -> xr.Dataset:
     how = Identifiability(models=0)
     return mf.solve(
         c0(),
@@ -74,7 +71,7 @@ def solved(**more: Any) -> xr.Dataset:
         search=SEARCH,
         seed=1,
         identifiability=how,
-        **more,
+        noise=mf.NoisePrior(weight=0),
     ).dataset
 
 

@@ -379,6 +379,7 @@ def test_draws_in_a_poor_basis_are_weighted(
         assert scipy.stats.kstest(found.theta[:, 1], scipy.stats.uniform.cdf).pvalue > 0.01
 
 
+@pytest.mark.slow(3)
 def test_draws_in_a_basis_know_modes_above_one_that_is_not_measured(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
