@@ -24,7 +24,6 @@ from problems import (
 
 import modefront as mf
 from modefront._typing import Bools, Floats
-from modefront.errors import InputError
 from modefront.front.dominance import undominated
 from modefront.front.front import Front
 from modefront.front.options import Pareto
@@ -245,20 +244,6 @@ def test_what_a_search_leaves_open_at_its_budget_is_a_finding() -> None:
     assert np.isnan(short["theta_std"].values[of_front]).any(), "of points that were not solved"
     whole = mf.solve(problem, points=5, noise=mf.NoisePrior(weight=0))
     assert not [x for x in whole["finding"].values.tolist() if x.startswith(text)]
-
-
-@pytest.mark.parametrize(
-    "wrong",
-    [
-        lambda: Search(evaluations=0),
-        lambda: Search(tolerance=0.0),
-        lambda: Search(doubt=1.0),
-        lambda: Search(tolerance=-1.0),
-    ],
-)
-def test_options_that_are_not_possible_are_refused(wrong: Callable[[], Search]) -> None:
-    with pytest.raises(InputError):
-        wrong()
 
 
 # ---- equations and bounds --------------------------------------------------------------------
