@@ -116,7 +116,7 @@ def test_no_evaluated_model_is_better_than_what_is_reported(seed: int, n: int) -
 @pytest.mark.parametrize(
     ("function", "lower", "upper"),
     [
-        (three_wells, [-1.0, -1.5], [2.0, 1.5]),
+        pytest.param(three_wells, [-1.0, -1.5], [2.0, 1.5], marks=pytest.mark.slow(3)),
         (disconnected, [0.0, -1.0], [0.651, 1.0]),
         (many_minima, [-4.0, -4.0], [4.0, 4.0]),
     ],
@@ -174,6 +174,7 @@ def test_a_known_front_is_solved_for_again_and_nothing_else_is_sought() -> None:
     assert all(x.converged for x in front_points(again))
 
 
+@pytest.mark.slow(3)
 def test_other_minima_of_a_known_front_are_solved_for_again() -> None:
     def shifted(theta: Floats) -> Derivatives:
         return three_wells(theta - [0.01, 0.0])

@@ -254,7 +254,7 @@ def test_two_factorisations_an_evaluation(costs: Costs) -> None:
 
 @pytest.mark.parametrize(
     ("thickness", "count"),
-    [(2e-3, 9), (2e-4, 18), pytest.param(2e-4, 30, marks=pytest.mark.slow(4))],
+    [(2e-3, 9), *(pytest.param(2e-4, n, marks=pytest.mark.slow(3)) for n in (18, 30))],
 )
 def test_two_factorisations_of_a_thin_shell(thickness: float, count: int, costs: Costs) -> None:
     """Rounding leaves much of unknown modes in the lowest ones, which lie far from sigma."""
