@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import re
 from collections import Counter
 from collections.abc import Iterator
@@ -38,6 +39,11 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     items.sort(key=lambda item: -seconds[item.path])
 
 
+def pytest_collection_finish() -> None:
+    """Leave all modules and tests out of garbage collections, each of which would visit them."""
+    gc.freeze()
+
+
 @pytest.fixture(autouse=True, scope="module")
 def nothing_stays_registered_after_a_file() -> Iterator[None]:
     """Forget what the tests of a file have registered."""
@@ -45,6 +51,15 @@ def nothing_stays_registered_after_a_file() -> Iterator[None]:
     yield
     for family, added in zip(FAMILIES, before, strict=True):
         family.added = added
+
+
+@pytest.fixture(scope="module")
+def short_chains() -> Iterator[None]:
+    """Draw fewer models from posteriors than users have, in a file that looks at few of them."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("modefront.study.session.DRAWS", 40)
+        patch.setattr("modefront.uncertainty.sampling.ROUND", 10)
+        yield
 
 
 @pytest.fixture

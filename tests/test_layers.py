@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
+from functools import cache
 from graphlib import TopologicalSorter
 from pathlib import Path
 
@@ -44,9 +45,14 @@ def part(name: str) -> int:
     return result[0]
 
 
+@cache
+def tree(file: Path) -> ast.Module:
+    return ast.parse(file.read_text(encoding="utf-8"))
+
+
 def imported(file: Path) -> Iterator[str]:
     """Yield the parts of the package that a file imports, wherever in it."""
-    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+    for node in ast.walk(tree(file)):
         names: list[str] = []
         if isinstance(node, ast.ImportFrom):
             assert node.level == 0, f"{file}: expected absolute imports, found a relative one"
@@ -81,7 +87,7 @@ def test_no_modules_import_each_other() -> None:
     }
     graph: dict[str, set[str]] = {name: set() for name in names}
     for name, file in names.items():
-        for node in _executed(ast.parse(file.read_text(encoding="utf-8"))):
+        for node in _executed(tree(file)):
             if isinstance(node, ast.ImportFrom):
                 root = node.module or ""
                 inner = {f"{root}.{name.name}" for name in node.names}

@@ -11,12 +11,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from refusals import command
+from faultless import PREDICTIONS, STUDY
+from refusals import command, edited
 
 import modefront
 from modefront.outputs import output, output_by_name, remove_unfinished, write_table, write_text
 from modefront.work.store import Store
 from modefront.work.task import Costs, Task
+
+pytestmark = pytest.mark.usefixtures("short_chains")
 
 SOURCE = Path(modefront.__file__).parent
 
@@ -191,15 +194,23 @@ def plant(path: Path, kind: str, precious: Path) -> None:
         os.mkfifo(path)
 
 
+@pytest.fixture
+def quick(folder: Path) -> Path:
+    """A study in it without predictions."""
+    path = folder / "chain.toml"
+    path.write_text(edited(STUDY, (PREDICTIONS, ""), ("draws = 3", "")))
+    return path
+
+
 @pytest.mark.slow(4)
 @pytest.mark.parametrize("kind", ["link", "pipe"])
-def test_names_that_can_be_guessed_lead_nowhere(kind: str, folder: Path) -> None:
+def test_names_that_can_be_guessed_lead_nowhere(kind: str, folder: Path, quick: Path) -> None:
     precious, results = folder / "precious", folder / "results"
     precious.write_text("precious")
     results.mkdir()
     for name in ("results.nc.tmp", "report.html.tmp", "running.lock"):
         plant(results / name, kind, precious)
-    assert command("run", folder / "chain.toml", "-o", results) == 0
+    assert command("run", quick, "-o", results) == 0
     (tasks,) = (path for path in (results / "tasks").iterdir() if path.is_dir())
     for name in ("study", *(f"{path.stem}.tmp" for path in tasks.glob("*.npz"))):
         (tasks / name).unlink(missing_ok=True)
@@ -207,7 +218,7 @@ def test_names_that_can_be_guessed_lead_nowhere(kind: str, folder: Path) -> None
     for path in [results / "results.nc", *list(tasks.glob("*.npz"))[:2]]:
         path.unlink()
         plant(path, kind, precious)
-    assert command("run", folder / "chain.toml", "-o", results) == 0
+    assert command("run", quick, "-o", results) == 0
     assert command("report", results, "-o", results / "report.html") == 0
     assert precious.read_text() == "precious"
 
@@ -215,10 +226,10 @@ def test_names_that_can_be_guessed_lead_nowhere(kind: str, folder: Path) -> None
 @pytest.mark.slow(3)
 @pytest.mark.parametrize("deep", [False, True])
 def test_linked_folders_of_tasks_are_refused(
-    deep: bool, folder: Path, capsys: pytest.CaptureFixture[str]
+    deep: bool, folder: Path, quick: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     results, elsewhere = folder / "results", folder / "elsewhere"
-    assert command("run", folder / "chain.toml", "-o", results) == 0
+    assert command("run", quick, "-o", results) == 0
     place = results / "tasks"
     if deep:
         (place,) = (path for path in place.iterdir() if path.is_dir())
@@ -227,16 +238,16 @@ def test_linked_folders_of_tasks_are_refused(
     place.symlink_to(elsewhere)
     before = {path: path.stat().st_mtime_ns for path in elsewhere.rglob("*")}
     capsys.readouterr()
-    assert command("run", folder / "chain.toml", "-o", results) == 2
+    assert command("run", quick, "-o", results) == 2
     err = capsys.readouterr().err
     assert f"{place}: folder: expected a folder of its own, found a link to {elsewhere}" in err
     assert {path: path.stat().st_mtime_ns for path in elsewhere.rglob("*")} == before
 
 
-def test_a_folder_of_results_may_be_a_link(folder: Path) -> None:
+def test_a_folder_of_results_may_be_a_link(folder: Path, quick: Path) -> None:
     (folder / "elsewhere").mkdir()
     (folder / "results").symlink_to(folder / "elsewhere")
-    assert command("run", folder / "chain.toml", "-o", folder / "results") == 0
+    assert command("run", quick, "-o", folder / "results") == 0
     assert (folder / "elsewhere" / "results.nc").is_file()
 
 

@@ -16,6 +16,8 @@ from modefront.front.point import Kind
 from modefront.predictions import Passage, PeakResponse
 from modefront.results.schema import ATTRIBUTES, DIMENSIONS, VARIABLES, variables_of
 
+pytestmark = pytest.mark.usefixtures("short_chains")
+
 DOCS = Path(__file__).parents[1] / "docs"
 RESULTS = DOCS.parent / "src" / "modefront" / "results" / "results.md"
 

@@ -9,6 +9,8 @@ from scipy import linalg
 
 import modefront
 
+pytestmark = pytest.mark.usefixtures("short_chains")
+
 README = Path(__file__).parents[1] / "README.md"
 
 

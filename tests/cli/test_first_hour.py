@@ -9,9 +9,12 @@ from pathlib import Path
 import pytest
 from refusals import command
 
+pytestmark = pytest.mark.usefixtures("short_chains")
+
 README = Path(__file__).parents[2] / "README.md"
 
 
+@pytest.mark.slow(6)
 def test_each_command_names_the_next_until_the_report(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -68,6 +68,7 @@ def test_an_ambient_test_of_three_setups_is_one_set(tmp_path: Path) -> None:
     assert not any("records of more" in text for text in report["warnings"]), "they are short"
 
 
+@pytest.mark.slow(3)
 def test_universal_files_are_written(tmp_path: Path) -> None:
     pyuff = pytest.importorskip("pyuff")
     write("hammer-test", tmp_path)
@@ -105,6 +106,7 @@ def test_a_band_of_too_few_lines_of_an_ambient_test_is_named(tmp_path: Path) -> 
         _invoke(tmp_path / "test.toml", "-o", tmp_path / "o.csv", "--band", 2, 2.01)
 
 
+@pytest.mark.slow(5)
 def test_modes_are_chosen_by_hand(tmp_path: Path) -> None:
     write("hammer-test", tmp_path)
     test, output = tmp_path / "test-m0.toml", tmp_path / "o.csv"

@@ -17,6 +17,8 @@ from modefront.cli.show import LISTS, print_comparison, print_results
 from modefront.results.compare import Apart, Comparison, Spread, Summary
 from modefront.results.remarks import findings_of
 
+pytestmark = pytest.mark.usefixtures("short_chains")
+
 SEARCH = mf.Search(doubt=0.5)
 NAMES = ["k1", "the stiffness of the second story"]
 

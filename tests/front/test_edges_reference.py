@@ -81,7 +81,10 @@ def test_both_evaluate_the_same_equation() -> None:
         assert agreement(equation(key), np.random.default_rng(0)) < 1e-10
 
 
-UNIQUE = [((6, 5, 0, "modes"), 1), ((8, 4, 5, "modes"), 0)]
+UNIQUE = [
+    ((6, 5, 0, "modes"), 1),
+    pytest.param((8, 4, 5, "modes"), 0, marks=pytest.mark.slow(3)),
+]
 
 
 @pytest.mark.parametrize(("key", "i"), UNIQUE)

@@ -237,7 +237,7 @@ def patches_front(_: np.random.Generator) -> Floats:
     [
         (sphere, sphere_front, 0.065),
         (flat_bowls, flat_bowls_front, 0.04),
-        (patches, patches_front, 0.08),
+        pytest.param(patches, patches_front, 0.08, marks=pytest.mark.slow(4)),
     ],
 )
 def test_fronts_of_three_objectives_are_covered_beyond_the_simplex(

@@ -24,7 +24,6 @@ from problems import (
 
 import modefront as mf
 from modefront._typing import Bools, Floats
-from modefront.errors import InputError
 from modefront.front.dominance import undominated
 from modefront.front.front import Front
 from modefront.front.options import Pareto
@@ -126,7 +125,7 @@ def test_no_evaluated_model_is_better_than_what_is_reported(seed: int, n: int) -
 @pytest.mark.parametrize(
     ("function", "lower", "upper"),
     [
-        (three_wells, [-1.0, -1.5], [2.0, 1.5]),
+        pytest.param(three_wells, [-1.0, -1.5], [2.0, 1.5], marks=pytest.mark.slow(3)),
         (disconnected, [0.0, -1.0], [0.651, 1.0]),
         (many_minima, [-4.0, -4.0], [4.0, 4.0]),
     ],
@@ -184,6 +183,7 @@ def test_a_known_front_is_solved_for_again_and_nothing_else_is_sought() -> None:
     assert all(x.converged for x in front_points(again))
 
 
+@pytest.mark.slow(3)
 def test_other_minima_of_a_known_front_are_solved_for_again() -> None:
     def shifted(theta: Floats) -> Derivatives:
         return three_wells(theta - [0.01, 0.0])
@@ -254,20 +254,6 @@ def test_what_a_search_leaves_open_at_its_budget_is_a_finding() -> None:
     assert np.isnan(short["theta_std"].values[of_front]).any(), "of points that were not solved"
     whole = mf.solve(problem, points=5, noise=mf.NoisePrior(weight=0))
     assert not [x for x in whole["finding"].values.tolist() if x.startswith(text)]
-
-
-@pytest.mark.parametrize(
-    "wrong",
-    [
-        lambda: Search(evaluations=0),
-        lambda: Search(tolerance=0.0),
-        lambda: Search(doubt=1.0),
-        lambda: Search(tolerance=-1.0),
-    ],
-)
-def test_options_that_are_not_possible_are_refused(wrong: Callable[[], Search]) -> None:
-    with pytest.raises(InputError):
-        wrong()
 
 
 # ---- equations and bounds --------------------------------------------------------------------

@@ -30,6 +30,7 @@ def test_a_seed_is_all_that_makes_a_problem(seed: int) -> None:
 
 
 def test_half_of_the_problems_of_each_class_are_of_a_wrong_one() -> None:
+    problems = list(map(make, SEEDS))
     for kind in CLASSES:
-        wrong = [bool(x.wrong) for x in map(make, SEEDS) if x.kind == kind]
+        wrong = [bool(x.wrong) for x in problems if x.kind == kind]
         assert sum(wrong) * 2 == len(wrong)

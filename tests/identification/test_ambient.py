@@ -213,6 +213,7 @@ def _records(
     return phi, y + 0.02 * y.std() * rng.standard_normal(y.shape)
 
 
+@pytest.mark.slow(3)
 def test_close_modes_are_found_and_a_machine_is_none() -> None:
     phi, y = _records(np.random.default_rng(3), 15, machine=1.0)
     result = identify([Records("all", tuple("abcde"), RATE, y)], (1, 7))
@@ -355,6 +356,7 @@ def test_what_overlaps_too_much_is_parted_between_the_modes_that_do_least() -> N
     assert sorted(len(group) for group in _overlapping(modes, 1.0)) == [2, 2, 2]
 
 
+@pytest.mark.slow(4)
 def test_noise_alone_has_no_modes() -> None:
     rng = np.random.default_rng(5)
     records = Records("noise", ("a", "b", "c"), 10.0, rng.standard_normal((3, 4000)))

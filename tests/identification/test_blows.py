@@ -49,9 +49,10 @@ def _blows(folder: Path, blows: int = 3) -> tuple[list[str], list[str]]:
     return files, references
 
 
-@pytest.mark.parametrize(
-    "windows", ["", '[impact]\nestimator = "Hv"\nforce_window = 0.1\nexponential = 1.5']
-)
+WINDOWS = '[impact]\nestimator = "Hv"\nforce_window = 0.1\nexponential = 1.5'
+
+
+@pytest.mark.parametrize("windows", ["", pytest.param(WINDOWS, marks=pytest.mark.slow(4))])
 def test_records_in_csv_give_the_modes_without_the_damping_of_the_window(
     tmp_path: Path, windows: str
 ) -> None:
@@ -60,7 +61,7 @@ def test_records_in_csv_give_the_modes_without_the_damping_of_the_window(
     assert data_set.warnings == ()
     assert (data.references, data.responses) == (FLOORS[1:], FLOORS)
     assert data.decay == pytest.approx(1 / 1.5 if windows else 0.4)
-    modes = identify(data, (1, 30)).modes
+    modes = identify(data, (3, 20)).modes
     assert [mode.frequency for mode in modes] == pytest.approx(THREE_STORY, rel=2e-3)
     assert [mode.damping for mode in modes] == pytest.approx(THREE_STORY_DAMPING, rel=0.1)
     for mode, true in zip(modes, zip(THREE_STORY, THREE_STORY_DAMPING, strict=True), strict=True):
@@ -102,7 +103,7 @@ def test_records_in_universal_files_are_grouped_into_blows(tmp_path: Path) -> No
     assert (data.references, data.responses) == (("3Z",), ("1Z", "2Z", "3Z"))
     assert data.quantity == "accelerance"
     assert data.variance is not None
-    modes = identify(data, (1, 30)).modes
+    modes = identify(data, (3, 20)).modes
     assert [mode.frequency for mode in modes] == pytest.approx(THREE_STORY, rel=2e-3)
     assert modes[0].shape.shape @ three_story_shapes()[0] != pytest.approx(0, abs=0.1)
 
@@ -117,7 +118,7 @@ def test_a_dead_response_is_left_out(tmp_path: Path) -> None:
     (dead_once,) = data_set.warnings
     assert re.search(r"floor2.* and \d more: empty or only zeros; the channel", dead_once)
     data = data_set.data
-    modes = identify(data, (1, 30)).modes
+    modes = identify(data, (3, 20)).modes
     assert [mode.frequency for mode in modes] == pytest.approx(THREE_STORY, rel=2e-3)
     dead = [name == "floor2" for name in data.responses]
     assert any(dead)
@@ -199,10 +200,11 @@ def test_windows_without_records_and_a_mixture_are_errors(tmp_path: Path) -> Non
         read_test(_test_file(tmp_path, ["f.csv"], ["a"], '[impact]\nestimator = "H2"'))
 
 
+@pytest.mark.slow(3)
 def test_damping_of_windowed_functions_is_that_of_the_structure(tmp_path: Path) -> None:
     tau = 1.0
     files = []
-    for j in range(3):
+    for j in (1, 2):
         for blow in range(3):
             time, force, y = _records(j, 10 * j + blow)
             spectra = np.fft.rfft(np.vstack([force, y]) * np.exp(-time / tau))
@@ -217,7 +219,7 @@ def test_damping_of_windowed_functions_is_that_of_the_structure(tmp_path: Path) 
     test = _test_file(tmp_path, files, references, "")
     test.write_text(test.read_text() + f"window = {{ exponential = {tau} }}\n")
     (data_set,) = read_test(test).sets
-    modes = identify(data_set.data, (2, 30)).modes
+    modes = identify(data_set.data, (3, 20)).modes
     assert [mode.frequency for mode in modes] == pytest.approx(THREE_STORY, rel=1e-3)
     assert [mode.damping for mode in modes] == pytest.approx(THREE_STORY_DAMPING, rel=0.1)
     test.write_text(test.read_text().replace(str(tau), "-1"))

@@ -58,6 +58,7 @@ def test_intervals_hold_the_truth(level: float, known: bool, force: float) -> No
     assert 0.8 < scores.std() < 1.2
 
 
+@pytest.mark.slow(2)
 def test_variances_of_many_responses_are_the_diagonal_of_covariances(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -11,7 +11,7 @@ import pytest
 import scipy.linalg
 import scipy.sparse
 import scipy.sparse.linalg
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from modefront import fem
@@ -134,6 +134,7 @@ def test_same_as_dense(size: int, seed: int, massless: float, free: bool, sensor
     agree(*both(K, M, theta, 3, rng.standard_normal((sensors, size))))
 
 
+@pytest.mark.slow(2)
 @given(st.integers(8, 40), st.integers(0, 10**6), st.sampled_from([0.0, 0.4]), st.booleans())
 def test_second_derivatives_are_those_of_all_modes(
     size: int, seed: int, massless: float, free: bool
@@ -176,6 +177,7 @@ def _terms(A: SparseAffine) -> list[scipy.sparse.csr_array]:
     return [scipy.sparse.csr_array(term) for term in A.dense().terms]
 
 
+@settings(max_examples=40)
 @given(st.integers(0, 10**6))
 def test_derivatives_do_not_depend_on_the_side_from_which_they_are_found(seed: int) -> None:
     K, M = network(40, seed, massless=0.3, free=False)
@@ -250,7 +252,10 @@ def test_two_factorisations_an_evaluation(costs: Costs) -> None:
         assert costs.factorisations == 2 * evaluation
 
 
-@pytest.mark.parametrize(("thickness", "count"), [(2e-3, 9), (2e-4, 18), (2e-4, 30)])
+@pytest.mark.parametrize(
+    ("thickness", "count"),
+    [(2e-3, 9), *(pytest.param(2e-4, n, marks=pytest.mark.slow(3)) for n in (18, 30))],
+)
 def test_two_factorisations_of_a_thin_shell(thickness: float, count: int, costs: Costs) -> None:
     """Rounding leaves much of unknown modes in the lowest ones, which lie far from sigma."""
     X, cells = fem.grids.plate(3.0, 2.0, 18, 12)

@@ -14,6 +14,8 @@ from modefront.plots.paper import figures
 from modefront.results.results import Results
 from modefront.study.examples import write_example
 
+pytestmark = pytest.mark.usefixtures("short_chains")
+
 SEARCH = mf.Search(doubt=0.5)
 
 

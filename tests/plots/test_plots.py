@@ -17,6 +17,8 @@ from modefront.plots import write_figures
 from modefront.plots.quantities import PLOTS, Plots, figures
 from modefront.results.results import Results
 
+pytestmark = pytest.mark.usefixtures("short_chains")
+
 SEARCH = mf.Search(doubt=0.5)
 OPEN = mf.Identifiability(models=0)
 FREQUENCIES, SHAPES = mf.Group("freq $x$", frequency="all"), mf.Group("shapes", shape="all")
@@ -159,6 +161,7 @@ def test_the_file_of_a_picture_is_the_same_again(
     assert first == again
 
 
+@pytest.mark.slow(3)
 def test_every_picture_is_shown_by_notebooks(three: Results) -> None:
     for _, figure in figures(three.dataset):
         assert figure._repr_svg_().lstrip().startswith("<?xml")

@@ -284,7 +284,7 @@ def test_nothing_is_overwritten(small: Path) -> None:
 def test_a_model_is_exported(small: Path) -> None:
     study = small / "study.toml"
     text = study.read_text() + "\n[pareto]\npoints = 3\n[identifiability]\nmodels = 0\n"
-    text += "[search]\ndoubt = 0.5\n"
+    text += "[search]\ndoubt = 0.5\n[noise]\nweight = 0\n"
     data = (small / "modes.csv").read_text()
     study.write_text(text)
     (small / "modes.csv").write_text(data.replace("0.01", "0.02"))
@@ -314,7 +314,7 @@ def test_the_study_of_results_is_found_wherever_it_lies(
 ) -> None:
     study, results = small / "study.toml", tmp_path / "elsewhere" / "deep" / "results"
     text = study.read_text() + "\n[pareto]\npoints = 2\n[identifiability]\nmodels = 0\n"
-    study.write_text(text + "[search]\ndoubt = 0.5\n")
+    study.write_text(text + "[search]\ndoubt = 0.5\n[noise]\nweight = 0\n")
     assert modefront("run", study, "-o", results).exit_code in (0, 1)
     result = modefront("export", results, "-o", tmp_path / "a")
     assert result.exit_code == 0, result.output + str(result.exception)

@@ -64,6 +64,7 @@ def test_reference_values_by_counting():
     assert result.unit_coefficient_of_variation == pytest.approx(bernoulli, rel=1e-3)
 
 
+@pytest.mark.slow(2)
 def test_unit_coefficients_of_variation_of_the_reference():
     (plain,) = run("importance", REFERENCE, [2.1], 12_000, seed(1))
     (directional,) = run("directional", REFERENCE, [2.1], 12_000, seed(1))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import hashlib
+import json
 import re
 from collections.abc import Callable
 from pathlib import Path
@@ -13,14 +14,17 @@ import numpy as np
 import pytest
 import xarray as xr
 from pages import HOSTILE, ROOT, chain, content, hostile, mesh, plate, three_groups
+from refusals import command
 
 import modefront as mf
-from modefront.cli.main import main
 from modefront.front.point import front_points
+from modefront.hdf5 import write_netcdf
 from modefront.models.base import geometry_of
 from modefront.reports.page import page, topics
-from modefront.results.files import FILE, write
+from modefront.results.files import CHECKSUM, FILE, checksums, write
 from modefront.results.shapes import drawing, mode_shapes
+
+pytestmark = pytest.mark.usefixtures("short_chains")
 
 MEGABYTE = 1e6
 REPORT = ROOT / "report"
@@ -218,13 +222,6 @@ def test_what_did_not_converge_is_named() -> None:
     assert f"Not converged: {data['label'].values[2]}." in messages
 
 
-def command(*arguments: object, monkeypatch: pytest.MonkeyPatch) -> int:
-    monkeypatch.setattr("sys.argv", ["modefront", "report", *map(str, arguments)])
-    with pytest.raises(SystemExit) as status:
-        main()
-    return int(str(status.value.code))
-
-
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
     (tmp_path / "results").mkdir()
@@ -232,13 +229,11 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_the_command_writes_one_file(
-    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert command(folder / "results", "-o", folder / "a.html", monkeypatch=monkeypatch) == 0
+def test_the_command_writes_one_file(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert command("report", folder / "results", "-o", folder / "a.html") == 0
     assert f"wrote {folder / 'a.html'}" in capsys.readouterr().out
     assert (folder / "a.html").read_text(encoding="utf-8") == page([("results", chain())])
-    assert command(folder / "results", monkeypatch=monkeypatch) == 0
+    assert command("report", folder / "results") == 0
     assert sorted(path.name for path in folder.iterdir()) == ["a.html", "results"]
     assert (folder / "results" / "report.html").is_file()
 
@@ -257,31 +252,31 @@ def test_results_that_were_damaged_are_refused(
     change: Callable[[xr.Dataset], xr.Dataset],
     says: str,
     folder: Path,
-    monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     path = folder / "results" / FILE
-    whole = xr.load_dataset(path, engine="h5netcdf")
-    change(whole).to_netcdf(path, engine="h5netcdf")
-    assert command(folder / "results", "-o", folder / "a.html", monkeypatch=monkeypatch) == 2
+    whole = chain().assign_attrs({CHECKSUM: json.dumps(checksums(chain()))})
+    with path.open("w+b") as stream:
+        write_netcdf(change(whole), stream)
+    assert command("report", folder / "results", "-o", folder / "a.html") == 2
     assert f"{folder / 'results' / FILE}: {says}: expected" in capsys.readouterr().err
     assert not (folder / "a.html").exists()
 
 
 def test_other_groups_and_other_files_are_refused(
-    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (folder / "other").mkdir()
     write(three_groups(), folder / "other" / FILE)
     out = folder / "a.html"
     both = (folder / "results", folder / "other")
-    assert command(*both, "-o", out, monkeypatch=monkeypatch) == 2
+    assert command("report", *both, "-o", out) == 2
     assert "groups: expected those of" in capsys.readouterr().err
-    assert command(folder / "none", "-o", out, monkeypatch=monkeypatch) == 2
-    assert command(folder / "results", "-o", folder / "a.pdf", monkeypatch=monkeypatch) == 2
+    assert command("report", folder / "none", "-o", out) == 2
+    assert command("report", folder / "results", "-o", folder / "a.pdf") == 2
     assert "a file that ends in .html" in capsys.readouterr().err
     nowhere = folder / "none" / "a.html"
-    assert command(folder / "results", "-o", nowhere, monkeypatch=monkeypatch) == 2
+    assert command("report", folder / "results", "-o", nowhere) == 2
     assert not list(folder.glob("*.html*"))
 
 

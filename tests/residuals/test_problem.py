@@ -160,11 +160,13 @@ def test_objectives_are_means_over_data_sets() -> None:
     assert result.properties.tolist() == [3, 9]
 
 
+@settings(max_examples=50)
 @given(st.lists(st.floats(-10, 10).filter(lambda x: abs(x) > 1e-3), min_size=3, max_size=3))
 def test_measured_shapes_have_no_scale_and_no_sign(scales: list[float]) -> None:
     theta = np.array([1.1, 0.9, 1.2, 1.0])
     scaled: Floats = SHAPE * np.array(scales)[:, None]
-    J = [problem_of(modal_data(FREQUENCY, x, FLOORS)).evaluate(theta).J for x in (SHAPE, scaled)]
+    problems = [problem_of(modal_data(FREQUENCY, x, FLOORS)) for x in (SHAPE, scaled)]
+    J = [problem.evaluate(theta, derivatives=False).J for problem in problems]
     assert J[1] == pytest.approx(J[0], rel=1e-10)
 
 

@@ -156,6 +156,7 @@ def test_peak_close_to_an_antiresonance():
     assert abs(frequency_response(system, near)).max() <= second.amplitude * (1 + 1e-15)
 
 
+@pytest.mark.slow(3)
 @settings(max_examples=60, deadline=None)
 @given(seed=st.integers(0, 2**32 - 1), m=st.integers(1, 8), quantity=st.sampled_from([*ORDERS]))
 def test_no_peak_is_missed(seed, m, quantity):

@@ -16,7 +16,7 @@ from refusals import command
 import modefront as mf
 from modefront.results.files import FILE, checksums, read_dataset, write
 
-pytestmark = pytest.mark.slow(2)
+pytestmark = [pytest.mark.slow(2), pytest.mark.usefixtures("short_chains")]
 
 
 @pytest.fixture(scope="module")

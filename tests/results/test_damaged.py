@@ -40,6 +40,10 @@ def test_every_variable_is_in_the_schema(whole: xr.Dataset, tmp_path: Path) -> N
     xr.testing.assert_identical(mf.read_results(tmp_path).dataset, whole)
 
 
+def test_as_many_models_are_drawn_as_intervals_need(whole: xr.Dataset) -> None:
+    assert whole["sample_theta"].shape == (200, 2)
+
+
 @pytest.mark.parametrize(
     ("change", "says"),
     [

@@ -7,6 +7,7 @@ status 2, and nothing is left behind.
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass
+from itertools import zip_longest
 from pathlib import Path
 
 import pytest
@@ -303,14 +304,25 @@ def fault_text(place: str, expected: str, what: str) -> str:
     return f"{head}: expected ... {expected} ... , found {what}"
 
 
-@pytest.mark.parametrize("key", KEYS, ids=lambda key: key.place)
+HIDING = ("[model] kind", "[[group]] 1 scale", "[[group]] 2 shape", "[[predict.")
+"""Where faults that hide others begin, or are hidden by them."""
+
+ALONE = [[key] for key in KEYS if key.place.startswith(HIDING)]
+OTHERS = [key for key in KEYS if not key.place.startswith(HIDING)]
+TOGETHER = [*ALONE, *(OTHERS[k : k + 8] for k in range(0, len(OTHERS), 8))]
+"""Keys that are wrong at once, of which all are shown, and those that are wrong alone."""
+
+
+@pytest.mark.parametrize("keys", TOGETHER, ids=lambda keys: keys[0].place)
 def test_every_key_of_the_study_refuses_what_it_cannot_be(
-    key: Key, folder: Path, refused: Check
+    keys: list[Key], folder: Path, refused: Check
 ) -> None:
-    for value in key.values():
-        study = folder / "wrong.toml"
-        study.write_text(edited(STUDY, (key.line, f"{key.name} = {value}")))
-        refused(study, fault_text(key.place, key.expected, ""))
+    study = folder / "wrong.toml"
+    for values in zip_longest(*(key.values() for key in keys)):
+        wrong = [(key, value) for key, value in zip(keys, values, strict=True) if value]
+        edits = [(key.line, f"{key.name} = {value}") for key, value in wrong]
+        study.write_text(edited(STUDY, *edits))
+        refused(study, *(fault_text(key.place, key.expected, "") for key, _ in wrong))
 
 
 def test_the_reduction_of_matrices_refuses_what_it_cannot_be(folder: Path, refused: Check) -> None:

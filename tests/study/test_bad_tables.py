@@ -6,6 +6,8 @@ import pytest
 from faultless import DATA, GROUPS, PARAMETERS, STUDY, WEIGHTED
 from refusals import Check, command, edited, refuses
 
+pytestmark = pytest.mark.usefixtures("short_chains")
+
 CONTRADICTIONS = [
     # tables
     ("[study]\n", "[stduy]\n", "top level: expected a known key, found 'stduy' (did you mean 'st"),

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 import shutil
-import sys
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -14,12 +13,12 @@ import pytest
 import scipy.sparse
 import xarray as xr
 from interruptions import interrupt_after
+from refusals import command
 from texts import two_of_each
 
 import modefront as mf
 from modefront._typing import Floats
 from modefront.analysis.certified import AIM, certified_best, certified_front
-from modefront.cli.main import main
 from modefront.fem import grids
 from modefront.front.front import Edge, Front
 from modefront.front.pareto import pareto_front
@@ -191,30 +190,22 @@ def test_a_run_that_is_done_solves_nothing_again(file: Path, whole: xr.Dataset) 
     assert replace(costs, factorisations=0) == Costs(), "but for the units of parameters"
 
 
-def command(monkeypatch: pytest.MonkeyPatch, *arguments: object) -> int | str | None:
-    monkeypatch.setattr(sys, "argv", ["modefront", *map(str, arguments)])
-    with pytest.raises(SystemExit) as left:
-        main()
-    return left.value.code
-
-
 def test_run_shows_the_cost_and_show_the_errors(
     file: Path,
     whole: xr.Dataset,
-    monkeypatch: pytest.MonkeyPatch,
     capfd: pytest.CaptureFixture[str],
 ) -> None:
     folder = file.with_name("shown")
-    assert command(monkeypatch, "run", file, "-o", folder) == 0
+    assert command("run", file, "-o", folder) == 0
     out = " ".join(capfd.readouterr().out.split())
     n = whole.attrs["full_eigensolutions"]
     corrected = whole.attrs["corrected_eigensolutions"]
     assert f"{n} full eigensolutions in" in out
     assert re.search(r"\d reduced in", out)
-    assert command(monkeypatch, "show", folder, "--findings") == 0
+    assert command("show", folder, "--findings") == 0
     out = " ".join(capfd.readouterr().out.split())
     assert f"reduced basis from {n} full eigensolutions and {corrected} corrected" in out
-    assert command(monkeypatch, "show", folder, "--points") == 0
+    assert command("show", folder, "--points") == 0
     out = capfd.readouterr().out
     assert "estimated relative errors" in out
     assert "eigenvalue" in out
@@ -234,14 +225,13 @@ def test_predictions_are_made_in_full_and_that_is_said(
     file: Path,
     whole: xr.Dataset,
     tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
     capfd: pytest.CaptureFixture[str],
 ) -> None:
     folder = shutil.copytree(file.with_name("whole"), tmp_path / "results")
     study = variant(file, "predicted", "[pareto]", f"{PREDICTION}[pareto]")
-    assert command(monkeypatch, "run", study, "-o", folder) == 0
+    assert command("run", study, "-o", folder) == 0
     capfd.readouterr()
-    assert command(monkeypatch, "show", folder, "--findings") == 0
+    assert command("show", folder, "--findings") == 0
     out = " ".join(capfd.readouterr().out.split())
     data = read_dataset(folder)
     basis = whole.attrs["full_eigensolutions"]
@@ -255,12 +245,12 @@ def test_predictions_are_made_in_full_and_that_is_said(
 
 
 def test_what_cannot_be_met_in_the_memory_is_said_and_is_an_exit_of_1(
-    file: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+    file: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
     bytes_of_basis = 8 * 8 * N * (N - 1)
     small = variant(file, "small", "seed = 2", f"seed = 2\nmemory = {bytes_of_basis / 2**30}")
     folder = file.with_name("small")
-    assert command(monkeypatch, "run", small, "-o", folder) == 1
+    assert command("run", small, "-o", folder) == 1
     out, err = capfd.readouterr()
     out = " ".join(out.split())
     data = read_dataset(folder)
@@ -268,16 +258,14 @@ def test_what_cannot_be_met_in_the_memory_is_said_and_is_an_exit_of_1(
     assert failed.size
     assert data.attrs["full_eigensolutions"] == 1
     assert "modes are less accurate than asked for" in out
-    assert command(monkeypatch, "show", folder, "--findings") == 0
+    assert command("show", folder, "--findings") == 0
     listed = " ".join(capfd.readouterr().out.split())
     assert "modes are less accurate than asked for at" in listed
     assert f"errors above the tolerance, kept and marked: {', '.join(failed)}" in err
 
 
 @pytest.mark.slow(3)
-def test_a_model_without_a_basis_says_so(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
-) -> None:
+def test_a_model_without_a_basis_says_so(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     file = write_study(tmp_path)
     for name in ("K0", "K1", "K2", "M"):
         A = scipy.sparse.load_npz(tmp_path / f"{name}.npz").toarray()[50:140, 50:140]
@@ -287,10 +275,10 @@ def test_a_model_without_a_basis_says_so(
         text.replace("c = 107", "c = 57").replace("d = 150", "d = 70").replace("e = 172", "e = 89")
     )
     file.write_text(text.replace("points = 3", "points = 2"))
-    status = command(monkeypatch, "run", file)
+    status = command("run", file)
     capfd.readouterr()
     assert status in (0, 1)
-    assert command(monkeypatch, "show", tmp_path / "study-results", "--findings") == 0
+    assert command("show", tmp_path / "study-results", "--findings") == 0
     out = capfd.readouterr().out
     assert "no reduced basis: the model has only 90 degrees of freedom" in out
 

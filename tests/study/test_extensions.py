@@ -140,6 +140,7 @@ def test_a_kind_of_residual(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
         mf.load(own)
 
 
+@pytest.mark.slow(2)
 def test_residuals_without_standard_deviations_have_no_posterior(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -193,6 +194,7 @@ def read_columns(path: Path, sensors: Sequence[str] | None) -> mf.ModalData:
     return mf.modal_data(table[:, 0], table[:, 1:], tuple(names))
 
 
+@pytest.mark.slow(2)
 def test_a_reader_of_modal_data(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     own = write_study(tmp_path, "")
     measured = mf.load(own).problem.data

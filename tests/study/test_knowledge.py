@@ -13,6 +13,8 @@ import modefront as mf
 from modefront._typing import Floats
 from modefront.results.remarks import findings_of
 
+pytestmark = pytest.mark.usefixtures("short_chains")
+
 NAMES = ("k1", "k2", "k3")
 MODEL = mf.chain(NAMES, [2.0, 1.5, 1.0], [3e3, 2e3, 4e3], stiffness_parameters=NAMES)
 SEARCH = mf.Search(doubt=0.5)
@@ -38,14 +40,14 @@ def problem_of(*, sets: int = 1, std: float = 0.0, seed: int = 0) -> mf.Updating
 
 
 @cache
-def results(source: str) -> xr.Dataset:
+def results(source: str, drawings: int = 2) -> xr.Dataset:
     problem = problem_of(sets=8) if source == "sets" else problem_of(std=0.002)
     return mf.solve(
         problem,
         points=2,
         seed=1,
         search=SEARCH,
-        uncertainty=mf.Uncertainty("auto", bootstrap=100),
+        uncertainty=mf.Uncertainty("auto", bootstrap=drawings),
         noise=mf.NoisePrior(weight=0),
     ).dataset
 
@@ -101,6 +103,7 @@ def test_exact_fits_of_the_frequencies_are_points() -> None:
         assert modes == pytest.approx(problem_of(std=0.002).data.frequency[0], rel=1e-7)
 
 
+@pytest.mark.slow(4)
 @pytest.mark.parametrize("source", ["std", "sets"])
 def test_linearised_scatter_is_that_of_synthetic_data(source: str) -> None:
     """100 drawings tell a standard deviation to 7 %; where it is smooth, the linear one agrees.
@@ -109,7 +112,7 @@ def test_linearised_scatter_is_that_of_synthetic_data(source: str) -> None:
     8 sets tell it to twice the error.
     """
     factor, limit = (np.sqrt(7 / 8), 0.28) if source == "sets" else (1.0, 0.14)
-    data = results(source)
+    data = results(source, 100)
     for label in ("edge-frequencies", "edge-shapes", "equal-weights", "optimal-weights", "nbi-2"):
         for name in ("theta", "objective"):
             linear = factor * value_of(data, f"{name}_std", label)

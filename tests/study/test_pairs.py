@@ -8,6 +8,8 @@ import pytest
 from modefront import Group, UpdatingProblem, matrices, modal_data, solve, updating_problem
 from modefront.results.remarks import findings_of
 
+pytestmark = pytest.mark.usefixtures("short_chains")
+
 SENSORS = ("a", "b", "c")
 
 

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 import xarray as xr
 from interruptions import interrupt_at
+from refusals import command
 from scipy.signal import lsim
 from two_masses import FRF, MASSES, PASSAGE, QUICK, ZETA, direct, matrices, run, write_study
 
 import modefront as mf
 from modefront._typing import Floats
-from modefront.cli.main import main
 from modefront.errors import InputError, ModelError, UnfinishedError
 from modefront.models.base import Transfer
 from modefront.models.matrices import MatrixModel
@@ -99,11 +99,13 @@ def test_a_moving_base_is_the_force_of_inertia(results: xr.Dataset) -> None:
         assert first.values == pytest.approx(other.values, rel=1e-12)
 
 
+@pytest.mark.slow(1)
 def test_a_band_without_a_peak_is_said_to_have_none(results: xr.Dataset) -> None:
     assert np.isnan(results["frf_peak"].sel(frf="between: low")).all()
     assert np.isnan(results["frf_peak_range"].sel(frf="between: low")).all()
 
 
+@pytest.mark.slow(1)
 def test_ranges_are_those_of_the_front_and_not_of_its_points(results: xr.Dataset) -> None:
     """Of these three points no one is near the least probability, which is within the front."""
     optimal = results.isel(point=results["pareto"].values)
@@ -149,6 +151,7 @@ def monte_carlo(theta: Floats, dt: float, samples: int, seed: int) -> Floats:
     return out
 
 
+@pytest.mark.slow(1)
 def test_drift_probabilities_are_those_of_an_own_monte_carlo(results: xr.Dataset) -> None:
     samples = 1500
     for position in (0, results["kind"].values.tolist().index("optimal-weights")):
@@ -163,6 +166,7 @@ def test_drift_probabilities_are_those_of_an_own_monte_carlo(results: xr.Dataset
             assert abs(P - counted) < 4 * np.hypot(error, chosen)
 
 
+@pytest.mark.slow(1)
 def test_what_a_probability_depends_on_is_told_with_it(results: xr.Dataset) -> None:
     reported = {
         "level": [0.02, 0.025],
@@ -222,6 +226,7 @@ def test_other_predictions_do_no_old_work_again(
     assert len(written) == evaluated
 
 
+@pytest.mark.slow(1)
 def test_eigenproblems_of_predictions_are_counted(results: xr.Dataset, tmp_path: Path) -> None:
     plain = run(tmp_path, "")
     predictions = 5 + 1
@@ -328,18 +333,6 @@ def test_outputs_of_a_mesh(tmp_path: Path) -> None:
     # One mode of displacement: its participation 1.2 to 1.3, 1 / (2 zeta omega^2) of the base's.
     amplitude = result["peak"][0] * 2 * 0.02 * (2 * np.pi * first) ** 2
     assert 1.15 < amplitude < 1.35
-
-
-def command(*arguments: object) -> int:
-    before = sys.argv
-    sys.argv = ["modefront", *map(str, arguments)]
-    try:
-        with pytest.raises(SystemExit) as left:
-            main()
-    finally:
-        sys.argv = before
-    assert isinstance(left.value.code, int)
-    return left.value.code
 
 
 @pytest.mark.slow(4)

@@ -4,7 +4,6 @@ import json
 from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
 
 import numpy as np
 import pytest
@@ -62,7 +61,7 @@ def c0() -> mf.UpdatingProblem:
         return mf.load(Path(folder) / "study.toml").problem
 
 
-def solved(**more: Any) -> xr.Dataset:
+def solved() -> xr.Dataset:
     how = Identifiability(models=0)
     return mf.solve(
         c0(),
@@ -71,7 +70,7 @@ def solved(**more: Any) -> xr.Dataset:
         search=SEARCH,
         seed=1,
         identifiability=how,
-        **more,
+        noise=mf.NoisePrior(weight=0),
     ).dataset
 
 

@@ -51,11 +51,14 @@ def problem_of(
     return mf.updating_problem(chain, data, GROUPS, bounds, dict.fromkeys(names, start))
 
 
+def solved(problem: mf.UpdatingProblem, seed: int = 1) -> xr.Dataset:
+    how = mf.Pareto(points=20, programme="equations")
+    return mf.solve(problem, pareto=how, seed=seed, noise=WITHOUT).dataset
+
+
 @cache
 def results(model: str) -> xr.Dataset:
-    return mf.solve(
-        problem_of(model), points=20, programme="equations", seed=1, noise=WITHOUT
-    ).dataset
+    return solved(problem_of(model))
 
 
 def nbi(data: xr.Dataset) -> xr.Dataset:
@@ -148,9 +151,7 @@ def test_global_optima_do_not_depend_on_the_seed(model: str) -> None:
 
 
 def test_the_same_seed_gives_the_same_digits() -> None:
-    again = mf.solve(
-        problem_of("M0"), points=20, programme="equations", seed=1, noise=WITHOUT
-    ).dataset
+    again = solved(problem_of("M0"))
     assert again.identical(results("M0"))
 
 
@@ -172,13 +173,7 @@ def compare(result: xr.Dataset, expected: xr.Dataset, order: list[int] | None = 
 @pytest.mark.slow(2)
 @pytest.mark.parametrize("model", ["M0", "M1"])
 def test_the_order_of_the_parameters_does_not_matter(model: str) -> None:
-    other = mf.solve(
-        problem_of(model, names=("k3", "k1", "k2")),
-        points=20,
-        programme="equations",
-        seed=2,
-        noise=WITHOUT,
-    ).dataset
+    other = solved(problem_of(model, names=("k3", "k1", "k2")), 2)
     compare(other, results(model), [2, 0, 1])
 
 
@@ -186,25 +181,13 @@ def test_the_order_of_the_parameters_does_not_matter(model: str) -> None:
 @pytest.mark.parametrize("model", ["M0", "M1"])
 def test_units_do_not_matter(model: str) -> None:
     # Tonnes and kilonewtons a metre: the frequencies stay.
-    other = mf.solve(
-        problem_of(model, stiffness=1e-3, mass=1e-3),
-        points=20,
-        programme="equations",
-        seed=3,
-        noise=WITHOUT,
-    ).dataset
+    other = solved(problem_of(model, stiffness=1e-3, mass=1e-3), 3)
     compare(other, results(model))
 
 
 @pytest.mark.slow(3)
 def test_sign_and_scale_of_measured_shapes_do_not_matter() -> None:
-    other = mf.solve(
-        problem_of("M0", shape_scales=(-1.0, 250.0, -3e-4)),
-        points=20,
-        programme="equations",
-        seed=4,
-        noise=WITHOUT,
-    ).dataset
+    other = solved(problem_of("M0", shape_scales=(-1.0, 250.0, -3e-4)), 4)
     compare(other, results("M0"))
 
 
@@ -215,14 +198,14 @@ def test_scaling_the_model_scales_the_parameters() -> None:
     wider = mf.UpdatingProblem(
         problem.model, problem.data, GROUPS, problem.lower / 2, problem.upper / 2, problem.start / 2
     )
-    result = mf.solve(wider, points=20, programme="equations", seed=5, noise=WITHOUT).dataset
+    result = solved(wider, 5)
     expected = nbi(results("M0"))["theta"].values
     assert 2 * nbi(result)["theta"].values == pytest.approx(expected, abs=2e-5)
     heavier = problem_of("M0", mass=2.0)
     wider = mf.UpdatingProblem(
         heavier.model, heavier.data, GROUPS, 2 * problem.lower, 2 * problem.upper, 2 * problem.start
     )
-    result = mf.solve(wider, points=20, programme="equations", seed=6, noise=WITHOUT).dataset
+    result = solved(wider, 6)
     assert nbi(result)["theta"].values / 2 == pytest.approx(expected, abs=2e-5)
 
 
@@ -239,10 +222,7 @@ def test_matrices_give_the_same_front_as_the_chain() -> None:
     problem = mf.updating_problem(
         model, data, GROUPS, dict.fromkeys(NAMES, (0.2, 5.0)), dict.fromkeys(NAMES, 1.0)
     )
-    compare(
-        mf.solve(problem, points=20, programme="equations", seed=1, noise=WITHOUT).dataset,
-        results("M0"),
-    )
+    compare(solved(problem), results("M0"))
 
 
 @pytest.mark.slow(2)
@@ -265,7 +245,7 @@ def test_perfect_data_are_a_front_of_one_point() -> None:
     modes = base.model.modes(np.array([1.2, 0.9, 1.1]), 3)
     data = mf.modal_data(modes.frequency, modes.phi.T, FLOORS)
     problem = mf.UpdatingProblem(base.model, data, GROUPS, base.lower, base.upper, base.start)
-    result = mf.solve(problem, points=20, programme="equations", seed=1, noise=WITHOUT).dataset
+    result = solved(problem)
     assert result.attrs["front_is_a_point"]
     assert "front" not in result["kind"].values
     edge = result["theta"].values[result["label"].values.tolist().index("edge-frequencies")]

@@ -1,6 +1,7 @@
 """Errors beside the scatter of data sets tell whether a model lacks something."""
 
 import numpy as np
+import pytest
 import scipy.stats
 
 import modefront as mf
@@ -9,6 +10,8 @@ from modefront.uncertainty.inference import CHANCE, lack_of_fit, most_probable
 from modefront.uncertainty.noise import Uncertainty
 from modefront.uncertainty.prior import NoisePrior
 from modefront.work.task import IMMEDIATE
+
+pytestmark = pytest.mark.usefixtures("short_chains")
 
 N, SETS = 5, 4
 SPRING = 0.01

@@ -54,6 +54,7 @@ def two_groups(theta: Floats) -> Residuals:
     return [(r1, np.column_stack([unit, zero])), (r2, np.column_stack([unit / 2, y * unit]))]
 
 
+@pytest.mark.slow(2)
 def test_two_groups_against_integration_over_parameters_and_variances() -> None:
     """The variances are integrated numerically too: the marginal is not taken on trust."""
     a = np.array([60.0, 60.0])

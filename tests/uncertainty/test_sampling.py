@@ -22,7 +22,6 @@ from modefront.uncertainty.inference import log_values, maximum
 from modefront.uncertainty.prior import NoiseModel, NoisePrior, Standardised
 from modefront.uncertainty.sampling import (
     CHAINS,
-    DRAWS,
     SOLVED,
     Model,
     Peak,
@@ -119,7 +118,9 @@ def test_intervals_are_those_of_integration(
     assert (np.abs(found - expected) < 0.12 * width).all()
 
 
-@pytest.mark.parametrize("mean", [-1.5, 0.1, 1.02])
+@pytest.mark.parametrize(
+    "mean", [pytest.param(x, marks=pytest.mark.slow(3)) for x in (-1.5, 0.1)] + [1.02]
+)
 def test_draws_at_bounds_are_those_of_the_truncated_gaussian(mean: float) -> None:
     """One linear residual of known variance whose minimum is beyond, near or between the bounds."""
     std = 0.3
@@ -170,7 +171,8 @@ def test_twins_beyond_a_bound_fill_the_triangle() -> None:
         assert scipy.stats.kstest(x, scipy.stats.uniform(0.5, 0.5).cdf).statistic < 0.12
 
 
-def test_draws_are_those_of_the_seed() -> None:
+def test_draws_are_those_of_the_seed(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("modefront.uncertainty.sampling.ROUND", 10)
     noise = noise_of(banana, [-2, -2], [2, 3], [2.0])
     theta = maximum(noise, np.array([0.3, 0.1])).theta
     draws = [draw_models(noise, [theta], 15, seed, IMMEDIATE).theta for seed in (3, 3, 4)]
@@ -189,6 +191,7 @@ def many(theta: Floats) -> Residuals:
     return [(r, dr)]
 
 
+@pytest.mark.slow(6)
 def test_thirty_parameters_with_flat_directions() -> None:
     """Parameters without effect are uniform, and y is where the known sum lets x be."""
     noise = replace(noise_of(many, [-1] * 30, [1] * 30, [10.0]), weight=1e8)
@@ -322,7 +325,7 @@ def test_parameters_have_their_priors_between_the_bounds(z: float) -> None:
 def test_chains_end_at_half_their_length_where_each_stays_where_it_is(
     size: float, rounds: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Of 12 rounds that 200 draws may take."""
+    """Of 12 rounds that as many draws as all chains have steps in a round may take."""
     calls = []
 
     def apart(x: Floats) -> tuple[float, float]:
@@ -330,10 +333,11 @@ def test_chains_end_at_half_their_length_where_each_stays_where_it_is(
         return 2.0, size
 
     monkeypatch.setattr("modefront.uncertainty.sampling.agreement", apart)
+    monkeypatch.setattr("modefront.uncertainty.sampling.ROUND", 10)
     noise = noise_of(flat, [-2, -2], [2, 3], [1.0])
-    found = draw_models(noise, [np.array([0.4, 0.0])], DRAWS, 1, IMMEDIATE)
+    found = draw_models(noise, [np.array([0.4, 0.0])], 10 * CHAINS, 1, IMMEDIATE)
     assert (len(calls), found.settled) == (rounds, False)
-    assert found.theta.shape == (DRAWS, 2)
+    assert found.theta.shape == (10 * CHAINS, 2)
 
 
 def test_derivatives_beyond_all_bounds_leave_a_peak() -> None:
@@ -349,7 +353,10 @@ def test_derivatives_beyond_all_bounds_leave_a_peak() -> None:
     assert np.linalg.eigvalsh(peak.precision(np.ones(1))).min() > 0
 
 
-@pytest.mark.parametrize(("mean", "std", "count"), [(0.2, 0.2, 300), (0.9, 0.05, 50)])
+@pytest.mark.parametrize(
+    ("mean", "std", "count"),
+    [(0.2, 0.2, 300), pytest.param(0.9, 0.05, 50, marks=pytest.mark.slow(3))],
+)
 def test_draws_in_a_poor_basis_are_weighted(
     mean: float, std: float, count: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -372,6 +379,7 @@ def test_draws_in_a_poor_basis_are_weighted(
         assert scipy.stats.kstest(found.theta[:, 1], scipy.stats.uniform.cdf).pvalue > 0.01
 
 
+@pytest.mark.slow(3)
 def test_draws_in_a_basis_know_modes_above_one_that_is_not_measured(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

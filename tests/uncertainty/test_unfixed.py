@@ -9,6 +9,8 @@ from modefront.uncertainty.inference import Freed, excluding, most_probable, unf
 from modefront.uncertainty.prior import NoisePrior
 from modefront.work.task import IMMEDIATE, counted
 
+pytestmark = pytest.mark.usefixtures("short_chains")
+
 NAMES = ("k1", "k2", "k3", "k4", "k5")
 FIXED = ("k2", "k4")
 

@@ -112,6 +112,7 @@ def named(folder: Path, name: str) -> mf.Results:
     return mf.run(study(folder, *edits), folder / "results")
 
 
+@pytest.mark.slow(3)
 def test_weights_named_like_work_have_no_part_in_it(tmp_path: Path) -> None:
     """``near-shapes`` is how the task is named that seeks the reported edge of the shapes."""
     ordinary = named(tmp_path / "mine", "mine")

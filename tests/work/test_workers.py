@@ -242,6 +242,7 @@ def test_processes_share_nothing_among_threads(two: Workers) -> None:
     assert set(Run(backend=two).run([Task(("threads", k), threads, (k,)) for k in range(8)])) == {1}
 
 
+@pytest.mark.slow(2)
 @pytest.mark.skipif(os.name == "nt", reason="there is no such signal on Windows")
 def test_a_killed_process_is_replaced_and_its_tasks_are_done_again(
     two: Workers, tmp_path: Path
