@@ -121,11 +121,9 @@ def test_the_ranges_of_predictions_are_over_the_reference(two: Results) -> None:
 
 
 def test_draws_of_the_posterior_are_drawn_in_pairs(two: Results, three: Results) -> None:
-    figure = two.plot.corner()
-    draws = two["sample_theta"].values
-    (pair,) = (axes for axes in figure.axes if axes.get_ylabel())
-    x, y = next(line for line in pair.lines if len(line.get_xdata()) == len(draws)).get_data()
-    assert np.array_equal(np.column_stack([x, y]), draws)
+    (pair,) = (axes for axes in two.plot.corner().axes if axes.get_ylabel())
+    drawn = [np.asarray(line.get_xydata()) for line in pair.lines]
+    assert any(np.array_equal(x, two["sample_theta"].values) for x in drawn)
     assert len(two.plot.corner(["k1"]).axes) == 1
     with pytest.raises(KeyError, match="no parameter 'k3'"):
         two.plot.corner(["k3"])

@@ -257,7 +257,7 @@ def test_results_that_were_damaged_are_refused(
     path = folder / "results" / FILE
     whole = chain().assign_attrs({CHECKSUM: json.dumps(checksums(chain()))})
     with path.open("w+b") as stream:
-        write_netcdf(change(whole), stream)
+        write_netcdf(change(whole), stream, {})
     assert command("report", folder / "results", "-o", folder / "a.html") == 2
     assert f"{folder / 'results' / FILE}: {says}: expected" in capsys.readouterr().err
     assert not (folder / "a.html").exists()

@@ -46,7 +46,7 @@ def test_what_a_run_writes_fits(run: Path) -> None:
 def test_draws_are_a_group_with_dimensions_of_arviz(run: Path) -> None:
     data = read_dataset(run)
     with xr.open_datatree(run / FILE, engine="h5netcdf") as tree:  # as ArviZ opens it
-        draws = tree["posterior"].load()
+        draws = tree["posterior"].to_dataset().load()
     assert draws["theta"].dims == ("chain", "draw", "parameter")
     for name in ("theta", "frf_peak", "failure_probability"):
         assert np.array_equal(draws[name][0], data[f"draw_{name}"].values, equal_nan=True)

@@ -43,8 +43,9 @@ def write(data: Dataset, path: Path) -> None:
         name.removeprefix("draw_"): Array(("chain", "draw", *x.dims[1:]), x.values[None], x.attrs)
         for name, x in drawn.items()
     }
-    named = {x: data[x] for each in drawn.values() for x in each.dims if x in data.variables}
-    groups = {"posterior": ArrayDataset({**named, **posterior})} if drawn else {}
+    for name in (str(x) for each in drawn.values() for x in each.dims if x in data.variables):
+        posterior[name] = Array((name,), data[name].values, data[name].attrs)
+    groups = {"posterior": ArrayDataset(posterior)} if drawn else {}
     with output(path, lasting=True) as stream:
         write_netcdf(data.assign_attrs({CHECKSUM: json.dumps(checksums(data))}), stream, groups)
 
