@@ -35,7 +35,7 @@ def quick(monkeypatch: pytest.MonkeyPatch) -> None:
     replaced(three_story, "front", {key: np.ones(9) for key in three_story.PUBLISHED["M0"]})
     replaced(nafems, "differences", (None, np.zeros(1)))
     replaced(elements, "relative", np.zeros(1))
-    replaced(calibration, "judge", [SimpleNamespace(held=True)])
+    replaced(calibration, "judged", [SimpleNamespace(held=True)])
     replaced(check, "spoilt_case", SimpleNamespace(made=["k1"]))
     replaced(check, "diagnosed", [(["k1"], None)])
     replaced(concrete_frame, "run", 1)
