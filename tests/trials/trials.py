@@ -276,8 +276,8 @@ def _digits(folder: Path) -> dict[str, bytes]:
         return {name: value[()].tobytes() for name, value in data.items() if _is_number(value)}
 
 
-def _is_number(value: h5py.Dataset) -> bool:
-    return value.dtype.kind in "fiub"
+def _is_number(value: h5py.Dataset | h5py.Group) -> bool:
+    return isinstance(value, h5py.Dataset) and value.dtype.kind in "fiub"
 
 
 def rows_of_every_format(examples: int) -> int:
