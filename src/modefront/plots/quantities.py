@@ -1,7 +1,6 @@
 """The front in the space of errors, quantities along it, minima, their scatter, and predictions."""
 
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import suppress
 from dataclasses import dataclass
 from functools import wraps
 from typing import Any, Concatenate, ParamSpec
@@ -439,7 +438,10 @@ class Plots:
 def figures(data: Dataset) -> Iterator[tuple[str, canvas.Picture]]:
     """Yield name and figure of everything that the results hold, each prediction by itself."""
     for name in PLOTS:
-        with suppress(InputError):
-            yield name, getattr(Plots(data), name)()
-            for each in predictions_in(data) if name == "predictions" else ():
-                yield f"{each.kind.dimension} {each.name}", _page(data, each)
+        try:
+            picture = getattr(Plots(data), name)()
+        except InputError:  # the results do not hold what it shows
+            continue
+        yield name, picture
+        for each in predictions_in(data) if name == "predictions" else ():
+            yield f"{each.kind.dimension} {each.name}", _page(data, each)
