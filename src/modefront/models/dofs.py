@@ -12,7 +12,6 @@ from modefront.data.csv import read_table
 from modefront.fem.check import unit_vector
 from modefront.fem.structure import DIRECTIONS
 from modefront.inputs import wrong
-from modefront.models.base import passed_on
 from modefront.outputs import write_table
 from modefront.rounding import ACCUMULATED
 
@@ -32,7 +31,10 @@ class DofTable:
     direction: Ints  # (N,) 1 to 6 for x, y, z, rx, ry, rz; other numbers for other quantities
     weight: Floats  # (N,) share in the motion of the node; 0 for what is no part of it
 
-    size = passed_on("node", "size")
+    @property
+    def size(self) -> int:
+        """Number of degrees of freedom N."""
+        return self.node.size
 
     def of_direction(self, direction: str) -> list[tuple[int, float]]:
         """Return all degrees of freedom of nodes in a direction, each with the weight 1."""

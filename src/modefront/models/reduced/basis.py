@@ -28,7 +28,6 @@ from modefront.errors import ModelError
 from modefront.linalg.affine import DenseAffine
 from modefront.linalg.factorisation import Factorisation, Pencil, SingularMatrixError
 from modefront.linalg.products import combine, gram, times
-from modefront.models.base import passed_on
 from modefront.models.matrices import MatrixModel
 from modefront.modes import dense
 from modefront.modes.dense import Decomposition
@@ -51,9 +50,6 @@ class Basis:
     K: DenseAffine  # K, M: the matrices in the basis
     M: DenseAffine
 
-    pencil = passed_on("full", "pencil")  # the matrices of the full model
-    columns = passed_on("K", "size")  # dimension n of the space
-
     def __getstate__(self) -> dict[str, Any]:
         """Return the state without the factor, which cannot be sent."""
         return {**vars(self), "factor": None}
@@ -62,6 +58,16 @@ class Basis:
     def footprint(self) -> float:
         """Bytes that the basis takes, and an eigensolution of the full model."""
         return self.full.footprint + sum(block.nbytes for block in self.blocks)
+
+    @property
+    def pencil(self) -> Pencil:
+        """The matrices of the full model."""
+        return self.full.pencil
+
+    @property
+    def columns(self) -> int:
+        """Dimension n of the space."""
+        return self.K.size
 
     def combine(self, C: Floats) -> Floats:
         """Return V C for C of shape (n, m)."""
