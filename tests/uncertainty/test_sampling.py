@@ -118,6 +118,29 @@ def test_intervals_are_those_of_integration(
     assert (np.abs(found - expected) < 0.12 * width).all()
 
 
+@pytest.mark.slow(4)
+def test_variances_that_trade_off_are_proposed() -> None:
+    """One group is fitted exactly far from where the other one would be: both errors change."""
+    rng = np.random.default_rng(1)
+    A, B = 100 * rng.normal(size=(2, 2)), 20 * rng.normal(size=(6, 2))
+    y = B @ [0.15, 0.15] + rng.normal(size=6)
+
+    def groups(theta: Floats) -> list[tuple[Floats, Floats]]:
+        errors = np.tensordot(B, theta, axes=1) - y.reshape(-1, *[1] * (theta.ndim - 1))
+        return [(np.tensordot(A, theta, axes=1), A), (errors, B)]
+
+    noise = noise_of(groups, [-0.15, -0.15], [0.3, 0.3], [2.0, 6.0])
+    best = maximum(noise, np.zeros(2))
+    at, curved = find_peak(noise, best.theta)
+    assert Peak(at, noise.logs, curved).narrow(rng)
+    work, shares = Noting(), [0.05, 0.25, 0.5, 0.75, 0.95]
+    found = draw_models(noise, [best.theta], 200, 1, work)
+    assert found.settled
+    assert work.done <= 30, "rounds of chains; it takes 40 with independent variances alone"
+    for x, quantiles in zip(found.theta.T, grid_quantiles(noise, 121, shares), strict=True):
+        assert [(x < q).mean() for q in quantiles] == pytest.approx(shares, abs=0.12)
+
+
 @pytest.mark.parametrize(
     "mean", [pytest.param(x, marks=pytest.mark.slow(3)) for x in (-1.5, 0.1)] + [1.02]
 )

@@ -37,6 +37,8 @@ AGREE = 1.05  # deviation of all chains over that within them, from which they d
 ACCEPTED = 0.35  # share of steps nearby that are taken, below which they become shorter
 APART = 1.0  # distance of two models, in standard deviations, below which one leads to the other
 FAINT = 1e-3  # probability of a peak over that of the greatest one, below which it is left out
+WIDE = 4.0  # what degrees of freedom are divided by where `Peak.narrow` proposals are
+LINEAR = 100, 60  # Gibbs chains of the linear model, and their steps
 
 SMALL, SNAPSHOTS = 100, 40  # columns of a basis that is made smaller, and models that span that
 NEAR = 3e-3
@@ -101,6 +103,7 @@ class Peak:
     at: Evaluation  # the evaluation of the standardised problem there
     logs: LogSum  # -2 ln p of the squares of the residuals, with the variances integrated out
     curved: Floats  # (n, p, p, p) derivatives times second ones of the residuals of each group
+    wide: float = 1.0  # what the degrees of freedom of proposed variances are divided by
 
     @cached_property
     def top(self) -> Model:
@@ -112,26 +115,54 @@ class Peak:
         """Squares of the derivatives of each group, (n, p, p)."""
         return np.array([x.dr.T @ x.dr for x in self.at.residuals[:-1]])
 
-    @cached_property
-    def scale(self) -> Floats:
-        """Scale (n,) of the distribution of the variances, scale / chi-square of `dof`."""
-        return self.at.J[:-1] + self.logs.floor
-
     @property
     def expected(self) -> Floats:
         """Variances (n,) at the peak."""
-        return self.scale / self.logs.a
+        return (self.at.J[:-1] + self.logs.floor) / self.logs.a
 
     @cached_property
-    def dof(self) -> Floats:
-        """Degrees of freedom (n,) of the variances."""
+    def free(self) -> Floats:
+        """Degrees of freedom (n,) of the variances where parameters are least squares."""
         inverse = np.linalg.inv(self.precision(self.expected))
         q = np.einsum("jk,ikj->i", inverse, self.squares) / self.expected
         return np.maximum(self.logs.a - q, 1.0)
 
+    @cached_property
+    def dof(self) -> Floats:
+        """Degrees of freedom (n,) of the proposed variances."""
+        return np.maximum(self.free / self.wide, 1.0)
+
+    @cached_property
+    def scale(self) -> Floats:
+        """Scale (n,) of the proposed variances, which are scale / chi-square of `dof`."""
+        return self.expected * self.logs.a * self.dof / self.free
+
     def precision(self, s: Floats) -> Floats:
         """Return A (p, p)."""
         return _definite(np.tensordot(1 / s, self.squares, axes=1))
+
+    def narrow(self, rng: np.random.Generator) -> bool:
+        """Return whether proposals are worth less than 1 / WIDE of the draws of the linear model.
+
+        Along a trade-off of two groups the variance of one grows where that of the other shrinks.
+        Proposed ones are independent, and hardly ever there: chains that are stay for long.
+        """
+        (chains, steps), z = LINEAR, self.at.theta
+        g, weights = np.array([x.dr.T @ x.r for x in self.at.residuals[:-1]]), []
+        s = np.tile(self.expected, (chains, 1))
+        for _ in range(steps):
+            L = np.linalg.cholesky(np.eye(z.size) + np.tensordot(1 / s, self.squares, axes=1))
+            b = np.linalg.solve(L, -(z + 1 / s @ g)[..., None])
+            size = np.log(np.diagonal(L, axis1=1, axis2=2)).sum(axis=1)
+            size += np.log(s) @ (self.logs.a - self.free) / 2
+            weights.append((b**2).sum(axis=(1, 2)) / 2 - size)
+            noisy = b + rng.normal(size=b.shape)
+            step = np.linalg.solve(L.swapaxes(1, 2), noisy)[..., 0]
+            bent = np.einsum("mj,ijk,mk->mi", step, self.squares, step)
+            J = self.at.J[:-1] + 2 * step @ g.T + bent
+            s = (J + self.logs.floor) / rng.chisquare(self.logs.a, J.shape)
+        above = np.ravel(weights) - np.median(weights)
+        return bool(np.logaddexp.reduce(above) > np.log(WIDE * above.size))
 
     def forward(self, model: Model) -> tuple[Floats, Floats]:
         """Return F (p,) of a model and its derivative (p, p)."""
@@ -243,6 +274,8 @@ def draw_models(
     peaks = _mixture(noise, work.run(tasks))
     chains: Sequence[Chain | None] = [None] * CHAINS
     kept: list[Floats] = []
+    rng = np.random.default_rng(seed_sequence(seed, stage, "wide"))
+    peaks += [replace(x, wide=WIDE) for x in peaks if x.narrow(rng)]
     rng = np.random.default_rng(seed_sequence(seed, stage, "near"))
     around = [peaks[k].top.newton(1.0) for k in rng.choice(len(peaks), SNAPSHOTS)]
     near = _nearer(noise, np.array([_drawn(mean, A, rng) for mean, A in around]), 0, work)
