@@ -24,7 +24,9 @@ from modefront.work.task import Costs, counted
 # Threads wait for each other on small matrices. SciPy brings a BLAS of its own: `scipy.linalg`.
 threadpool_limits(1, user_api="blas")
 
-settings.register_profile("modefront", deadline=None, derandomize=True, print_blob=False)
+settings.register_profile(
+    "modefront", max_examples=40, deadline=None, derandomize=True, print_blob=False
+)
 settings.load_profile("modefront")
 
 
@@ -57,8 +59,8 @@ def nothing_stays_registered_after_a_file() -> Iterator[None]:
 def short_chains() -> Iterator[None]:
     """Draw fewer models from posteriors than users have, in a file that looks at few of them."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("modefront.study.session.DRAWS", 40)
-        patch.setattr("modefront.uncertainty.sampling.ROUND", 10)
+        patch.setattr("modefront.study.session.DRAWS", 20)
+        patch.setattr("modefront.uncertainty.sampling.ROUND", 5)
         yield
 
 
