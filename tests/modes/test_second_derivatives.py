@@ -135,7 +135,7 @@ def beam(size: int) -> tuple[Floats, Floats, Floats]:
 
 def test_products_of_powers_are_exact() -> None:
     # E t^3 / L^3 and E sqrt(t) in K, t L and 1/L in M: parameters E, t, L.
-    B, A, mass = beam(3)
+    B, A, mass = beam(2)
     K = affine(np.array([B, 0.3 * A]), np.array([[1.0, 3, -3], [1, 0.5, 0]]))
     M = affine(np.array([mass, 0.2 * A, 0.1 * A]), np.array([[0.0, 1, 1], [0, 0, -1], [0, 0, 0]]))
     assert_exact(K, M, np.array([1.2, 0.9, 1.1]), 4)
@@ -173,7 +173,7 @@ def test_close_modes_are_exact(gap: float) -> None:
     assert_exact(K, M, np.zeros(2), 2)
 
 
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=6, deadline=None)
 @given(st.integers(0, 2**31), st.integers(2, 6), st.integers(1, 3))
 def test_random_matrices_are_exact(seed: int, size: int, p: int) -> None:
     rng = np.random.default_rng(seed)
