@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import re
+import shutil
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
@@ -24,7 +25,9 @@ from modefront.work.task import Costs, counted
 # Threads wait for each other on small matrices. SciPy brings a BLAS of its own: `scipy.linalg`.
 threadpool_limits(1, user_api="blas")
 
-settings.register_profile("modefront", deadline=None, derandomize=True, print_blob=False)
+settings.register_profile(
+    "modefront", max_examples=40, deadline=None, derandomize=True, print_blob=False
+)
 settings.load_profile("modefront")
 
 
@@ -57,8 +60,8 @@ def nothing_stays_registered_after_a_file() -> Iterator[None]:
 def short_chains() -> Iterator[None]:
     """Draw fewer models from posteriors than users have, in a file that looks at few of them."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("modefront.study.session.DRAWS", 40)
-        patch.setattr("modefront.uncertainty.sampling.ROUND", 10)
+        patch.setattr("modefront.study.session.DRAWS", 20)
+        patch.setattr("modefront.uncertainty.sampling.ROUND", 5)
         yield
 
 
@@ -95,19 +98,26 @@ def refused(capsys: pytest.CaptureFixture[str]) -> Check:
     return refuse
 
 
-@pytest.fixture
-def folder(tmp_path: Path) -> Path:
+@pytest.fixture(scope="session")
+def faultless(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with a study of a chain and of matrices in which nothing is wrong."""
-    (tmp_path / "chain.toml").write_text(STUDY)
-    (tmp_path / "matrices.toml").write_text(STUDY.replace(CHAIN, MATRICES))
-    (tmp_path / "modes.csv").write_text(DATA)
-    scipy.io.mmwrite(tmp_path / "K0.mtx", K0)
-    np.save(tmp_path / "K1.npy", K1)
-    scipy.sparse.save_npz(tmp_path / "K2.npz", scipy.sparse.csr_array(K2))
-    scipy.io.mmwrite(tmp_path / "M.mtx", scipy.sparse.coo_array(M))
-    (tmp_path / "folder.csv").mkdir()
-    scipy.io.savemat(tmp_path / "all.mat", {"K0": K0, "K1": K1, "text": "K1", "rows": 2.0})
-    scipy.io.savemat(tmp_path / "none.mat", {"rows": 2.0})
-    (tmp_path / "bad.mat").write_bytes((tmp_path / "all.mat").read_bytes()[:150])
-    (tmp_path / "folder.mtx").mkdir()
-    return tmp_path
+    root = tmp_path_factory.mktemp("faultless")
+    (root / "chain.toml").write_text(STUDY)
+    (root / "matrices.toml").write_text(STUDY.replace(CHAIN, MATRICES))
+    (root / "modes.csv").write_text(DATA)
+    scipy.io.mmwrite(root / "K0.mtx", K0)
+    np.save(root / "K1.npy", K1)
+    scipy.sparse.save_npz(root / "K2.npz", scipy.sparse.csr_array(K2))
+    scipy.io.mmwrite(root / "M.mtx", scipy.sparse.coo_array(M))
+    (root / "folder.csv").mkdir()
+    scipy.io.savemat(root / "all.mat", {"K0": K0, "K1": K1, "text": "K1", "rows": 2.0})
+    scipy.io.savemat(root / "none.mat", {"rows": 2.0})
+    (root / "bad.mat").write_bytes((root / "all.mat").read_bytes()[:150])
+    (root / "folder.mtx").mkdir()
+    return root
+
+
+@pytest.fixture
+def folder(faultless: Path, tmp_path: Path) -> Path:
+    """A copy of that folder."""
+    return Path(shutil.copytree(faultless, tmp_path, dirs_exist_ok=True))

@@ -20,7 +20,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from enum import Enum
-from functools import cache
+from functools import cache, partial
 from itertools import pairwise, repeat
 from pathlib import Path
 from typing import Annotated, Any, Literal, TypeVar, get_args, get_origin, get_type_hints
@@ -269,8 +269,11 @@ def keys(required: Sequence[str], **known: Requirement) -> tuple[Option, ...]:
 
 
 @cache
-def _declared(record: Callable[..., Any]) -> tuple[tuple[Any, Any, str], ...]:
-    """Return the arguments of a class or function, each with its annotation and its meaning."""
+def _declared(record: Callable[..., Any]) -> tuple[Option | partial[Option | None] | None, ...]:
+    """Return the option of each argument of a class or function, None for one that is none.
+
+    Where its requirement is that of the moment, what returns the option is there in its place.
+    """
     hints = get_type_hints(record, include_extras=True)
     _, _, section = (inspect.getdoc(record) or "").partition("\n----------\n")
     form = r"^([\w, ]+)(?: : |\n    )(.*(?:\n    .*)*)"  # of Attributes, or of Parameters
@@ -279,21 +282,28 @@ def _declared(record: Callable[..., Any]) -> tuple[tuple[Any, Any, str], ...]:
         for names, text in re.findall(form, section, re.MULTILINE)
         for name in names.split(", ")
     }
-    arguments = inspect.signature(record).parameters.values()
-    return tuple((each, hints[each.name], meanings.get(each.name, "")) for each in arguments)
+    out: list[Option | partial[Option | None] | None] = []
+    for each in inspect.signature(record).parameters.values():
+        hint = hints[each.name]
+        option = partial(_option, each, hint, meanings.get(each.name, ""))
+        out.append(option if _is_open(hint) else option())
+    return tuple(out)
+
+
+def _option(argument: inspect.Parameter, hint: Any, meaning: str) -> Option | None:
+    if not (requirement := _requirement(hint)):
+        return None
+    required, optional = argument.default is argument.empty, types.NoneType in get_args(hint)
+    default = None if required else plain(argument.default)
+    if default in ("", []) or not fits(default, requirement.schema):
+        default = None
+    return Option(argument.name, requirement, optional, required, default, meaning)
 
 
 def options(record: Callable[..., Any]) -> tuple[Option, ...]:
     """Return the fields of a class of records, or arguments of a function, with requirements."""
-    out = []
-    for each, hint, meaning in _declared(record):
-        if requirement := _requirement(hint):
-            required, optional = each.default is each.empty, types.NoneType in get_args(hint)
-            default = None if required else plain(each.default)
-            if default in ("", []) or not fits(default, requirement.schema):
-                default = None
-            out.append(Option(each.name, requirement, optional, required, default, meaning))
-    return tuple(out)
+    known = (each() if isinstance(each, partial) else each for each in _declared(record))
+    return tuple(filter(None, known))
 
 
 def schema_of(record: Callable[..., Any]) -> Schema:
@@ -322,6 +332,12 @@ def _requirement(hint: Any) -> Requirement | None:
     elif origin in (types.UnionType, typing.Union):
         known = map(_requirement, parts)
     return next((each for each in known if isinstance(each, Requirement)), None)
+
+
+def _is_open(hint: Any) -> bool:
+    """Return whether an annotation has a function that returns its requirement."""
+    parts = get_args(hint)
+    return any(map(callable, parts[1:]) if get_origin(hint) is Annotated else map(_is_open, parts))
 
 
 def check_fields(record: Any) -> None:

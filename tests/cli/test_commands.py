@@ -458,7 +458,7 @@ def test_the_traceback_is_there_for_those_who_ask(
 
 
 def test_points_that_did_not_converge_are_said_and_kept(
-    modefront_: Run, study: Path, monkeypatch: pytest.MonkeyPatch
+    modefront_: Run, study: Path, done: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     run = session.run
 

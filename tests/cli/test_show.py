@@ -23,7 +23,9 @@ SEARCH = mf.Search(doubt=0.5)
 NAMES = ["k1", "the stiffness of the second story"]
 
 
-def solved(groups: Sequence[mf.Group], points: int) -> xr.Dataset:
+def solved(
+    groups: Sequence[mf.Group], points: int, noise: mf.NoisePrior | None = None
+) -> xr.Dataset:
     """Return the results of a chain of two stiffnesses."""
     model = mf.chain(NAMES, [1.0, 1.0], [900.0, 800.0], stiffness_parameters=NAMES)
     modes = model.modes(np.array([1.1, 0.9]), 2)
@@ -35,7 +37,12 @@ def solved(groups: Sequence[mf.Group], points: int) -> xr.Dataset:
     push = mf.PeakResponse("push", response=["floor1"], force="floor2", damping=0.02)
     how = mf.Identifiability(models=0)
     return mf.solve(
-        problem, points=points, search=SEARCH, identifiability=how, predictions=[push]
+        problem,
+        points=points,
+        search=SEARCH,
+        identifiability=how,
+        predictions=[push],
+        noise=noise,
     ).dataset
 
 
@@ -48,7 +55,8 @@ def two() -> xr.Dataset:
 @pytest.fixture(scope="module")
 def three() -> xr.Dataset:
     low, high = mf.Group("low", shape=[1]), mf.Group("high", shape=[2])
-    return solved([mf.Group("frequencies", frequency="all"), low, high], 3)
+    without = mf.NoisePrior(weight=0)
+    return solved([mf.Group("frequencies", frequency="all"), low, high], 2, without)
 
 
 def said(data: xr.Dataset) -> list[str]:
@@ -208,7 +216,7 @@ def test_a_model_at_a_jump_is_one_to_beware_of_and_no_failure() -> None:
 
 @pytest.mark.parametrize(
     ("groups", "parameters", "modes"),
-    [(2, 3, 3), (3, 3, 3), (2, 17, 12), (3, 17, 12), (4, 30, 12), (7, 30, 20), (1, 60, 40)],
+    [(2, 3, 3), (3, 17, 12), (7, 30, 20), (1, 60, 40)],
 )
 def test_the_first_screen_is_a_screen(
     groups: int, parameters: int, modes: int, capsys: pytest.CaptureFixture[str]

@@ -96,7 +96,10 @@ def with_a_slip(shape: Floats) -> None:
         (of_noise, "odd-sensor", "the values of sensor floor5 are noise"),
         (with_a_slip, "reversed-value", "in mode 3 has the other sign"),
         (pasted, "copied-sensor", "sensor floor3 has the same digits as floor7"),
-        (pasted_with_the_other_sign, "copied-sensor", "floor3 has the same digits as floor7"),
+        pytest.param(
+            *(pasted_with_the_other_sign, "copied-sensor", "floor3 has the same digits as floor7"),
+            marks=pytest.mark.slow(1),
+        ),
         (of_another_unit, "sensor-factor", "floor4 in all data are 1e+03 times what the others"),
         (
             with_a_lost_cell,

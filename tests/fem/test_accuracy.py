@@ -212,7 +212,7 @@ def test_narrow_elements_twist_as_thick_shells_do(triangles: bool) -> None:
     assert np.abs(found / [11.984, 30.765, 96.416, 151.94, 216.46] - 1).max() < 0.02
 
 
-@pytest.mark.parametrize("triangles", [False, True])
+@pytest.mark.parametrize("triangles", [pytest.param(False, marks=pytest.mark.slow(2)), True])
 def test_curved_shells_converge_with_order_2(triangles: bool) -> None:
     # An eighth of a cylinder with diaphragms: no corner or edge is singular.
     w = []
@@ -372,8 +372,8 @@ def test_cantilever_of_bricks_with_one_through_the_thickness() -> None:
 @pytest.mark.parametrize(
     ("kind", "counts", "order"),
     [
-        ("brick", (4, 8, 12), 2),
-        ("tetrahedra", (3, 4, 6), 4),
+        ("brick", (3, 5, 8), 2),
+        ("tetrahedra", (3, 4, 5), 4),
         ("wedges", (2, 3, 4), 4),
         ("quadratic_bricks", (2, 3, 4), 4),
     ],

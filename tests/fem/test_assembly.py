@@ -69,7 +69,7 @@ PARAMETERS = (
 )
 
 
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=5, deadline=None)
 @given(st.tuples(*[positive] * 6))
 def test_affine_form_is_the_direct_build(values: tuple[float, ...]) -> None:
     theta = np.array(values)

@@ -57,8 +57,15 @@ def one_gap(problem: Known, equations: bool) -> tuple[Gap, list[Solution], Bools
     return gap, points, nondominated(np.array([x.J for x in points]))
 
 
-@pytest.mark.parametrize("equations", [False, True])
-@pytest.mark.parametrize("function", [disconnected, mirrored])
+@pytest.mark.parametrize(
+    ("function", "equations"),
+    [
+        (disconnected, True),
+        (mirrored, False),
+        pytest.param(disconnected, False, marks=pytest.mark.slow(2)),
+        pytest.param(mirrored, True, marks=pytest.mark.slow(2)),
+    ],
+)
 def test_branches_end_where_the_front_jumps(
     function: Callable[[Floats], Derivatives], equations: bool
 ) -> None:

@@ -201,7 +201,10 @@ def test_other_minima_of_a_known_front_are_solved_for_again() -> None:
 # ---- what is asked for -----------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(("function", "points"), [(circles, 2), (concave, 8), (three_wells, 3)])
+@pytest.mark.parametrize(
+    ("function", "points"),
+    [(circles, 2), (concave, 8), pytest.param(three_wells, 3, marks=pytest.mark.slow(2))],
+)
 def test_a_front_of_two_groups_has_at_most_twice_the_points_that_are_asked_for(
     function: Callable[[Floats], Derivatives], points: int
 ) -> None:

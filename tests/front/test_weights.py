@@ -118,7 +118,7 @@ def test_an_exact_fit_has_no_weights() -> None:
     assert iterate_weights(problem, SUM, exact) is None
 
 
-@pytest.mark.parametrize("points", [3, 5, 11])
+@pytest.mark.parametrize("points", [pytest.param(3, marks=pytest.mark.slow(2)), 5, 11])
 def test_a_front_has_the_model_of_optimal_weights_where_one_is_regular(points: int) -> None:
     a = np.array([3.0, 5.0])
     front = pareto_front(box(offset, [-2, -2], [2, 2]), a, Pareto(points=points))

@@ -85,7 +85,7 @@ def _eight() -> tuple[Floats, Floats, Floats]:
     return f0, zeta, phi
 
 
-@pytest.mark.parametrize("high", [29.5, 30.0])
+@pytest.mark.parametrize("high", [29.5, pytest.param(30.0, marks=pytest.mark.slow(2))])
 def test_close_local_heavily_damped_and_edge_modes_are_found(high: float) -> None:
     f0, zeta, phi = _eight()
     f = np.arange(0.05, 30.05, 0.05)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import rslab
 import scipy.sparse
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from modefront._typing import Floats
@@ -30,7 +30,6 @@ def symmetric(size: int, seed: int) -> tuple[rslab.LdltSymbolic, Callable[[float
     return analysis, values, A
 
 
-@settings(max_examples=50)
 @given(st.integers(1, 40), st.integers(0, 10**6))
 def test_solutions_and_inertia(size: int, seed: int) -> None:
     analysis, values, A = symmetric(size, seed)

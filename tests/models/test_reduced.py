@@ -150,7 +150,7 @@ def test_derivatives_are_those_of_the_reduced_problem(full: MatrixModel) -> None
         assert result.dlam[r, i] == pytest.approx(slope[r], rel=1e-7, abs=1e-9 * result.lam[r[-1]])
 
 
-@pytest.mark.parametrize("snapshots", [1, 2, 3])
+@pytest.mark.parametrize("snapshots", [1, 3])
 def test_errors_are_what_the_certificate_says(full: MatrixModel, snapshots: int) -> None:
     rng = np.random.default_rng(5)
     model = reduced(full)

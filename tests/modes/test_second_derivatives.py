@@ -113,11 +113,11 @@ def affine(terms: Floats, exponents: Floats) -> DenseAffine:
 
 
 def test_chains_are_exact() -> None:
-    springs = [spring(4, 0), *(spring(4, i, i - 1) for i in (1, 2, 3))]
-    mass = [np.diag([1.0, 1, 2, 1]), *(np.diag(row) for row in 0.3 * np.eye(4))]
-    theta = np.array([1.0, 1.3, 0.8, 1.1])
-    assert_exact(linear(springs, 4), constant(mass[0], 4), theta, 4)
-    assert_exact(linear(springs, 4), linear(mass, 4), theta, 2)
+    springs = [spring(3, 0), *(spring(3, i, i - 1) for i in (1, 2))]
+    mass = [np.diag([1.0, 1, 2]), *(np.diag(row) for row in 0.3 * np.eye(3))]
+    theta = np.array([1.0, 1.3, 0.8])
+    assert_exact(linear(springs, 3), constant(mass[0], 3), theta, 3)
+    assert_exact(linear(springs, 3), linear(mass, 3), theta, 2)
 
 
 def beam(size: int) -> tuple[Floats, Floats, Floats]:
@@ -135,7 +135,7 @@ def beam(size: int) -> tuple[Floats, Floats, Floats]:
 
 def test_products_of_powers_are_exact() -> None:
     # E t^3 / L^3 and E sqrt(t) in K, t L and 1/L in M: parameters E, t, L.
-    B, A, mass = beam(3)
+    B, A, mass = beam(2)
     K = affine(np.array([B, 0.3 * A]), np.array([[1.0, 3, -3], [1, 0.5, 0]]))
     M = affine(np.array([mass, 0.2 * A, 0.1 * A]), np.array([[0.0, 1, 1], [0, 0, -1], [0, 0, 0]]))
     assert_exact(K, M, np.array([1.2, 0.9, 1.1]), 4)
@@ -173,7 +173,7 @@ def test_close_modes_are_exact(gap: float) -> None:
     assert_exact(K, M, np.zeros(2), 2)
 
 
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=6, deadline=None)
 @given(st.integers(0, 2**31), st.integers(2, 6), st.integers(1, 3))
 def test_random_matrices_are_exact(seed: int, size: int, p: int) -> None:
     rng = np.random.default_rng(seed)

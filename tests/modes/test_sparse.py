@@ -177,7 +177,7 @@ def _terms(A: SparseAffine) -> list[scipy.sparse.csr_array]:
     return [scipy.sparse.csr_array(term) for term in A.dense().terms]
 
 
-@settings(max_examples=40)
+@settings(max_examples=20)
 @given(st.integers(0, 10**6))
 def test_derivatives_do_not_depend_on_the_side_from_which_they_are_found(seed: int) -> None:
     K, M = network(40, seed, massless=0.3, free=False)
@@ -457,8 +457,8 @@ def wide(size: int, decades: float, copies: int) -> tuple[MatrixModel, Floats]:
 
 
 @pytest.mark.parametrize("copies", [1, 3])
-@pytest.mark.parametrize("decades", [0.5, 6, 10, 13])
-@pytest.mark.parametrize(("size", "count"), [(150, 150), (300, 120), (300, 240), (300, 300)])
+@pytest.mark.parametrize("decades", [0.5, 10, 13])
+@pytest.mark.parametrize(("size", "count"), [(150, 150), (300, 120), (300, 240)])
 def test_all_modes_are_there_where_all_degrees_of_freedom_have_mass(
     size: int, count: int, decades: float, copies: int
 ) -> None:

@@ -84,7 +84,7 @@ def convex(rng: np.random.Generator, p: int, rank: int) -> Floats:
     return np.asarray(root @ root.T)
 
 
-@settings(max_examples=100)
+@settings(max_examples=60)
 @given(SEEDS, st.integers(1, 6), st.integers(0, 5))
 def test_the_solution_is_optimal(seed: int, p: int, m: int) -> None:
     rng = np.random.default_rng(seed)
@@ -99,7 +99,6 @@ def test_the_solution_is_optimal(seed: int, p: int, m: int) -> None:
     assert value(qp, s) <= least(qp) + 1e-7
 
 
-@settings(max_examples=60)
 @given(SEEDS, st.integers(2, 5), st.integers(0, 4))
 def test_degenerate_functions_do_no_harm(seed: int, p: int, m: int) -> None:
     """Functions given twice that all meet at the start, shut bounds."""
@@ -113,7 +112,6 @@ def test_degenerate_functions_do_no_harm(seed: int, p: int, m: int) -> None:
     assert value(qp, solve_qp(qp)[0]) <= least(qp) + 1e-7
 
 
-@settings(max_examples=60)
 @given(SEEDS, st.integers(2, 6), st.integers(0, 4))
 def test_flat_directions_are_gone_to_the_end(seed: int, p: int, m: int) -> None:
     """Without any curvature in some directions, the slope leads to the box or the functions do."""
@@ -124,7 +122,6 @@ def test_flat_directions_are_gone_to_the_end(seed: int, p: int, m: int) -> None:
     assert value(qp, s) <= least(qp) + 1e-4 * max(1.0, float(np.abs(B).max()))
 
 
-@settings(max_examples=60)
 @given(SEEDS, st.integers(1, 6), st.integers(1, 4), st.floats(1e2, 1e5))
 def test_equations_are_met_by_steep_functions(seed: int, p: int, k: int, slope: float) -> None:
     """Of the corners of a simplex the greatest is least where all of them are."""
@@ -138,7 +135,6 @@ def test_equations_are_met_by_steep_functions(seed: int, p: int, k: int, slope: 
     assert A @ s == pytest.approx(b, abs=1e-7)
 
 
-@settings(max_examples=60)
 @given(SEEDS, st.integers(1, 5), st.integers(0, 4))
 def test_negative_curvature_descends_at_least(seed: int, p: int, m: int) -> None:
     rng = np.random.default_rng(seed)

@@ -37,7 +37,7 @@ def building(tmp_path_factory: pytest.TempPathFactory) -> Results:
     never = mf.Passage("never", **load, **rare, method="monte-carlo")
     return mf.solve(
         problem,
-        points=6,
+        points=4,
         search=SEARCH,
         identifiability=mf.Identifiability(models=0),
         predictions=[push, never],

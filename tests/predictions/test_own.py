@@ -4,9 +4,6 @@ from __future__ import annotations
 
 import base64
 import gzip
-import os
-import subprocess
-import sys
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -155,32 +152,6 @@ def test_a_kind_that_results_cannot_hold_is_refused(tmp_path: Path) -> None:
         mf.register(type("Bare", (), {}))
     with pytest.raises(mf.InputError, match="expected a table of its own, found 'period', of"):
         mf.register(type("Other", (Period,), {}))
-
-
-def test_entry_points_of_installed_packages_bring_classes(tmp_path: Path) -> None:
-    """In a process of its own, as the command line is."""
-    (tmp_path / "periods.py").write_text(
-        Path(__file__)
-        .read_text(encoding="utf-8")
-        .split("TABLE =")[0]
-        .replace("from refusals import command\nfrom two_masses import write_study\n", "")
-    )
-    (tmp_path / "periods-1.dist-info").mkdir()
-    (tmp_path / "periods-1.dist-info" / "METADATA").write_text("Name: periods\nVersion: 1\n")
-    (tmp_path / "periods-1.dist-info" / "entry_points.txt").write_text(
-        "[modefront.predictions]\nperiod = periods:Period\n"
-    )
-    path = write_study(tmp_path, TABLE + "mode = 5\n")
-    place = os.pathsep.join([str(tmp_path), os.environ.get("PYTHONPATH", "")])
-    run = subprocess.run(
-        [sys.executable, "-m", "modefront", "check", str(path)],
-        env=os.environ | {"PYTHONPATH": place},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert run.returncode == 2
-    assert "expected a mode from 1 to 2, found 5" in run.stderr
 
 
 def test_a_kind_without_ranges_is_predicted_where_equivalent_models_count_too(

@@ -19,6 +19,8 @@ from modefront.reports.page import page
 
 HOSTILE = "<script>document.title = 'taken'</script>"
 ROOT = Path(__file__).parents[2]
+WITHOUT = mf.NoisePrior(weight=0)
+"""No posterior, which pages show of the chain."""
 
 
 @cache
@@ -58,7 +60,7 @@ def three_groups() -> xr.Dataset:
     bounds = dict.fromkeys(("k1", "k2"), (0.5, 2.0))
     problem = mf.updating_problem(model, data, groups, bounds, dict.fromkeys(bounds, 1.0))
     search = mf.Search(doubt=0.5)
-    return mf.solve(problem, method="weights", points=3, search=search).dataset
+    return mf.solve(problem, method="weights", points=3, search=search, noise=WITHOUT).dataset
 
 
 def plate(n: int = 2) -> fem.Structure:
@@ -96,7 +98,7 @@ def mesh() -> xr.Dataset:
     bounds = dict.fromkeys(("El", "Er"), (0.5, 2.0))
     problem = mf.updating_problem(model, data, groups, bounds, dict.fromkeys(bounds, 1.0))
     search = mf.Search(doubt=0.5)
-    return mf.solve(problem, points=4, search=search).dataset
+    return mf.solve(problem, points=4, search=search, noise=WITHOUT).dataset
 
 
 @cache
@@ -110,7 +112,8 @@ def many_modes() -> xr.Dataset:
     groups = [mf.Group("frequencies", frequency="all"), mf.Group("shapes", shape="all")]
     bounds = dict.fromkeys(names, (0.5, 2.0))
     problem = mf.updating_problem(model, data, groups, bounds, dict.fromkeys(bounds, 1.0))
-    return mf.solve(problem, points=3, search=mf.Search(doubt=0.5)).dataset
+    search = mf.Search(doubt=0.5)
+    return mf.solve(problem, points=3, search=search, noise=WITHOUT).dataset
 
 
 def hostile() -> xr.Dataset:

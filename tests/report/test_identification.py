@@ -24,7 +24,7 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
     write_example("hammer-test", folder)
     test = folder / "test-m0.toml"
     places = "\n".join(f"floor{k} = [0, 0, {k}, 1, 0, 0]" for k in (1, 2, 3))
-    text, _ = test.read_text(encoding="utf-8").split('[[set]]\nname = "set3"')
+    text, _ = test.read_text(encoding="utf-8").split('[[set]]\nname = "set2"')
     test.write_text(f"{text}\n[geometry]\n{places}\n", encoding="utf-8")
     return write_identification(identify(test, drop=[2], seeds=[18.5]), folder / "page.html")
 

@@ -160,7 +160,7 @@ def test_objectives_are_means_over_data_sets() -> None:
     assert result.properties.tolist() == [3, 9]
 
 
-@settings(max_examples=50)
+@settings(max_examples=20)
 @given(st.lists(st.floats(-10, 10).filter(lambda x: abs(x) > 1e-3), min_size=3, max_size=3))
 def test_measured_shapes_have_no_scale_and_no_sign(scales: list[float]) -> None:
     theta = np.array([1.1, 0.9, 1.2, 1.0])

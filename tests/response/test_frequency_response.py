@@ -195,10 +195,10 @@ def test_a_response_at_a_node_has_no_peaks():
     assert peaks(ModalSystem(np.ones(1), np.full(1, 0.02), np.ones((1, 1)), np.zeros((1, 1)))) == ()
 
 
-def test_hundred_modes():
-    omega = np.linspace(5, 500, 100)
-    shape = np.random.default_rng(0).normal(size=(1, 100))
-    system = ModalSystem(omega, np.full(100, 1e-3), shape.T, shape, static=np.eye(1))
+def test_fifty_modes():
+    omega = np.linspace(5, 250, 50)
+    shape = np.random.default_rng(0).normal(size=(1, 50))
+    system = ModalSystem(omega, np.full(50, 1e-3), shape.T, shape, static=np.eye(1))
     result = np.array([p.omega for p in peaks(system)])
     assert all(np.min(abs(result - w)) < 0.02 * w for w in omega[abs(shape[0]) > 0.1])
 

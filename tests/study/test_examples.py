@@ -28,7 +28,13 @@ def test_the_promised_examples_are_there() -> None:
     assert promised | {"three-story-c0", "three-story-c1"} <= set(names())
 
 
-@pytest.mark.parametrize("name", names())
+LONG = ("calculix", "three-story-fe-c1")
+"""What tests of imports, and the other example of the kind, look at as well."""
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(x, marks=[pytest.mark.slow(2)] * (x in LONG)) for x in names()]
+)
 def test_each_example_is_written_whole_and_is_sound(name: str, tmp_path: Path) -> None:
     written = write_example(name, tmp_path / "new" / "folder")
     assert sorted(written) == sorted((tmp_path / "new" / "folder").iterdir())

@@ -218,30 +218,34 @@ def test_what_is_no_extension_is_refused() -> None:
 
 
 def test_entry_points_bring_extensions(tmp_path: Path) -> None:
-    """In a process of its own, as the command line is."""
+    """A kind of model and a class of predictions, in a process of its own, as the command is."""
     text = Path(__file__).read_text(encoding="utf-8")
     start, end = text.index("def read_springs"), text.index("\n\ndef test_a_kind_of_model")
-    (tmp_path / "springs.py").write_text(
-        "import modefront as mf\n"
-        + text[start:end].replace(
-            "table: Table, parameters: Sequence[str]) -> Any", "table, parameters)"
-        )
+    springs = text[start:end].replace(
+        "table: Table, parameters: Sequence[str]) -> Any", "table, parameters)"
     )
-    (tmp_path / "springs-1.dist-info").mkdir()
-    (tmp_path / "springs-1.dist-info" / "METADATA").write_text("Name: springs\nVersion: 1\n")
-    (tmp_path / "springs-1.dist-info" / "entry_points.txt").write_text(
+    (tmp_path / "springs.py").write_text(f"import modefront as mf\n{springs}")
+    text = (Path(__file__).parents[1] / "predictions" / "test_own.py").read_text(encoding="utf-8")
+    own = "from refusals import command\nfrom two_masses import write_study\n"
+    (tmp_path / "periods.py").write_text(text.split("TABLE =")[0].replace(own, ""))
+    (tmp_path / "both-1.dist-info").mkdir()
+    (tmp_path / "both-1.dist-info" / "METADATA").write_text("Name: both\nVersion: 1\n")
+    (tmp_path / "both-1.dist-info" / "entry_points.txt").write_text(
         "[modefront.models]\nsprings = springs:SPRINGS\n"
+        "[modefront.predictions]\nperiod = periods:Period\n"
     )
-    own = write_study(tmp_path, "")
+    study = write_study(tmp_path, '\n[[predict.period]]\nname = "slow"\nmode = 5\n')
     (tmp_path / "k.txt").write_text("3000 2000")
     model = '[model]\nkind = "springs"\nsprings = "k.txt"\n\n'
-    own.write_text(own.read_text().replace(CHAIN, model))
+    study.write_text(study.read_text().replace(CHAIN, model))
     done = subprocess.run(
-        [sys.executable, "-m", "modefront", "check", str(own)],
+        [sys.executable, "-m", "modefront", "check", str(study)],
         env=os.environ
         | {"PYTHONPATH": os.pathsep.join([str(tmp_path), os.environ.get("PYTHONPATH", "")])},
         capture_output=True,
         text=True,
         check=False,
     )
-    assert done.returncode == 0, done.stderr
+    assert done.returncode == 2
+    (line,) = done.stderr.splitlines()
+    assert line.endswith("expected a mode from 1 to 2, found 5"), "the model of springs has two"

@@ -200,6 +200,7 @@ def test_what_is_not_asked_for_is_not_there() -> None:
         search=SEARCH,
         identifiability=mf.Identifiability(flat=0, models=0),
         uncertainty=mf.Uncertainty("none"),
+        noise=mf.NoisePrior(weight=0),
     ).dataset
     assert "theta_std" not in data
     assert "bootstrap_theta" not in data
@@ -212,7 +213,8 @@ def test_a_front_that_is_a_point_has_no_scatter_to_speak_of() -> None:
     data = mf.modal_data(
         modes.frequency, modes.phi.T, MODEL.sensors, frequency_std=0.01 * modes.frequency
     )
-    result = mf.solve(replace(problem_of(), data=data), points=4, search=SEARCH).dataset
+    problem, without = replace(problem_of(), data=data), mf.NoisePrior(weight=0)
+    result = mf.solve(problem, points=4, search=SEARCH, noise=without).dataset
     assert result.attrs["front_is_a_point"]
     assert np.isnan(result["theta_std"].values).all()
     assert any("no standard deviations are known at" in text for text in result["finding"].values)

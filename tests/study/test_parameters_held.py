@@ -19,6 +19,8 @@ GROUPS = [mf.Group("frequencies", frequency="all"), mf.Group("shapes", shape="al
 BOUNDS = (0.3, 3.0)
 SEARCH = mf.Search(doubt=0.5)
 
+pytestmark = pytest.mark.usefixtures("short_chains")
+
 
 def data(theta: Floats, modes: int) -> mf.ModalData:
     known = MODEL.modes(theta, modes)

@@ -58,7 +58,7 @@ def test_one_group_of_linear_residuals_has_students_distribution() -> None:
     of = Peak(at, noise.logs, np.zeros(0))
     assert of.dof == pytest.approx([6 + NU - 2], rel=1e-3)
     assert of.scale == pytest.approx([J + NU], rel=1e-3)
-    draws = draw_models(noise, [best.theta], 800, 1, IMMEDIATE).theta
+    draws = draw_models(noise, [best.theta], 400, 1, IMMEDIATE).theta
     size = np.sqrt(np.diag(np.linalg.inv(A.T @ A)) * (J + NU) / 8)
     for x, middle, scale in zip(draws.T, exact, size, strict=True):
         p = scipy.stats.kstest((x - middle) / scale, scipy.stats.t(8).cdf).pvalue
@@ -153,7 +153,7 @@ def test_draws_at_bounds_are_those_of_the_truncated_gaussian(mean: float) -> Non
         return [(np.array([(x - mean) / std]), np.array([[1 / std + 0 * x, 0 * x]]))]
 
     noise = replace(noise_of(line, [0, 0], [1, 1], [1.0]), weight=1e8)
-    draws = draw_models(noise, [maximum(noise, np.full(2, 0.5)).theta], 600, 5, IMMEDIATE).theta
+    draws = draw_models(noise, [maximum(noise, np.full(2, 0.5)).theta], 300, 5, IMMEDIATE).theta
     ends = (np.array([0, 1]) - mean) / std
     exact = scipy.stats.truncnorm(*ends, loc=mean, scale=std)
     assert scipy.stats.kstest(draws[:, 0], exact.cdf).pvalue > 0.01
@@ -184,7 +184,7 @@ def test_twins_beyond_a_bound_fill_the_triangle() -> None:
 
     noise = replace(noise_of(total, [0, 0], [1, 1], [1.0]), weight=1e8)
     work = Noting()
-    draws = draw_models(noise, [np.array([0.75, 0.75])], 400, 6, work).theta
+    draws = draw_models(noise, [np.array([0.75, 0.75])], 250, 6, work).theta
     assert work.expected[1:], "more rounds are said to come, as far as the size of the draws tells"
     for done, (few, many) in work.expected[1:]:
         left = work.done - done - CHAINS  # draws are weighed at the end
@@ -356,11 +356,11 @@ def test_chains_end_at_half_their_length_where_each_stays_where_it_is(
         return 2.0, size
 
     monkeypatch.setattr("modefront.uncertainty.sampling.agreement", apart)
-    monkeypatch.setattr("modefront.uncertainty.sampling.ROUND", 10)
+    monkeypatch.setattr("modefront.uncertainty.sampling.ROUND", 5)
     noise = noise_of(flat, [-2, -2], [2, 3], [1.0])
-    found = draw_models(noise, [np.array([0.4, 0.0])], 10 * CHAINS, 1, IMMEDIATE)
+    found = draw_models(noise, [np.array([0.4, 0.0])], 5 * CHAINS, 1, IMMEDIATE)
     assert (len(calls), found.settled) == (rounds, False)
-    assert found.theta.shape == (10 * CHAINS, 2)
+    assert found.theta.shape == (5 * CHAINS, 2)
 
 
 def test_derivatives_beyond_all_bounds_leave_a_peak() -> None:
@@ -378,7 +378,7 @@ def test_derivatives_beyond_all_bounds_leave_a_peak() -> None:
 
 @pytest.mark.parametrize(
     ("mean", "std", "count"),
-    [(0.2, 0.2, 300), pytest.param(0.9, 0.05, 50, marks=pytest.mark.slow(3))],
+    [(0.2, 0.2, 150), pytest.param(0.9, 0.05, 50, marks=pytest.mark.slow(3))],
 )
 def test_draws_in_a_poor_basis_are_weighted(
     mean: float, std: float, count: int, monkeypatch: pytest.MonkeyPatch

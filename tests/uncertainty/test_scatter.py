@@ -149,9 +149,9 @@ def test_a_level_that_moves_with_the_data() -> None:
     [
         (2, [0.3, 0.7], [1, 1], False),
         (3, [0.3, 0.5, 0.2], [1, 1, 1], False),
-        (3, [0.6, 0.5, -0.1], [1, 1, 1], False),
+        pytest.param(3, [0.6, 0.5, -0.1], [1, 1, 1], False, marks=pytest.mark.slow(2)),
         (3, [0.9, -0.4, 0.5], [1, 0, 1], False),
-        (3, [0.5, 0.2, 0.3], [1, 1, 1], True),
+        pytest.param(3, [0.5, 0.2, 0.3], [1, 1, 1], True, marks=pytest.mark.slow(2)),
         (3, [-0.5, 0.6, 0.9], [1, 1, 0], True),
     ],
 )

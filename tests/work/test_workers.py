@@ -74,7 +74,7 @@ def searched(work: Executor) -> Front:
     return pareto_front(problem, np.ones(2), Pareto(points=6), search=Search(doubt=0.3), work=work)
 
 
-@settings(max_examples=8)
+@settings(max_examples=4)
 @given(orders, st.integers(2, 3))
 def test_fronts_are_those_of_one_after_another(delays: list[int], count: int) -> None:
     alone = Run()

@@ -91,9 +91,10 @@ def _table(screen: Screen, data: Dataset, predictions: Sequence[list[str]] = ())
             scatter = f" ± {std[j]:.2g}" * bool(i == best and np.isfinite(std[j]) and not at)
             rows[-1].append(f"{number(value, '#.4g').removesuffix('.')}{scatter}{at}")
     rows.append(["modes: error of the frequency in %, and MAC"])
+    frequency, macs = data["frequency"].values, data["mac"].values
     for r, mode in enumerate(data["mode"].values):
         rows.append([f"  {mode}" + f": {measured[r]:.4g} Hz" * bool(np.isfinite(measured[r]))])
-        for f, mac in zip(data["frequency"].values[:, r], data["mac"].values[:, r], strict=True):
+        for f, mac in zip(frequency[:, r], macs[:, r], strict=True):
             error = 100 * (f / measured[r] - 1)
             first = f"{f:.4g} Hz" if np.isnan(error) else f"{round(error, 2) + 0.0:+.2f}"
             rows[-1].append("none" if np.isnan(f) else f"{first}  {number(mac, '.3f')}")

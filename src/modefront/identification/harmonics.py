@@ -15,7 +15,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.ndimage import correlate1d
 from scipy.optimize import minimize_scalar
-from scipy.stats import beta, chi2
+from scipy.special import betainccinv, chdtri
 
 from modefront._typing import Bools, Complexes, Floats
 from modefront.identification.spectra import Transforms
@@ -36,7 +36,7 @@ def without_sine(
     """
     n, spacing = len(lines.F), lines.omega[1] - lines.omega[0]
     chance = false / len(lines.omega)
-    least = chi2.isf(chance, 2 * n + 1)
+    least = chdtri(2 * n + 1, chance)
     wide = replace(model, zeta=np.maximum(model.zeta, spacing / 2 / model.omega))
     like_lines = model.zeta * model.omega < NEAR * spacing
     for r in np.flatnonzero(like_lines[: model.free] & ~held).tolist():
@@ -58,7 +58,7 @@ def without_sine(
         M += [np.linalg.inv(known)] * len(part)
     gains = _gains(F, root @ np.array(M) @ root.conj().mT)
     count = len(F) // blocks
-    if gains.max() < 2 * (count + n) * beta.isf(chance, n + 0.5, count):
+    if gains.max() < 2 * (count + n) * betainccinv(n + 0.5, count, chance):
         return None
     return _taken(lines, near, root @ root.conj().mT, int(gains.argmax()) / 2)[0], None
 

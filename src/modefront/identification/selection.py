@@ -8,8 +8,7 @@ Wald statistic of its shape, or what the fit without it loses.
 
 import numpy as np
 import scipy.linalg as la
-from scipy.special import gammaln
-from scipy.stats import chi2
+from scipy.special import chdtri, gammaln
 
 from modefront._typing import Bools, Complexes, Floats
 from modefront.identification.modal_model import COARSE, Fit, maximise, thinned
@@ -57,7 +56,7 @@ def needed(task: Problem) -> float:
     k = n_in + n_out
     ways = gammaln(k - 1) - gammaln(n_in) - gammaln(n_out)
     poles = np.log(len(task.s) * (k - 1) / (2 * np.pi)) + ways
-    return float(chi2.isf(min(FALSE * np.exp(-poles), 0.5), 2 * k))
+    return float(chdtri(2 * k, min(FALSE * np.exp(-poles), 0.5)))
 
 
 def gains(fit: Fit) -> Floats:
@@ -201,7 +200,7 @@ def paired(fit: Fit) -> Fit:
         start[[r, s]] = (lam[r] + lam[s]) / 2
         trial = maximise(task, start, fit.L, pairs=(*pairs, (r, s)))
         lost = 2 * (trial.cost - fit.cost) / noise[r]
-        if lost < chi2.isf(APART, PAIR_FREEDOM):
+        if lost < chdtri(PAIR_FREEDOM, APART):
             L = trial.L.copy()
             for pair in map(list, trial.pairs):
                 L[pair] = np.linalg.solve(plane_basis(trial.phi[pair]).T, L[pair])
@@ -255,4 +254,4 @@ def _differ(fit: Fit, r: int, s: int) -> bool:
     of[:, 2 * s : 2 * s + 2] = [[-factor.real, factor.imag], [-factor.imag, -factor.real]]
     freedom, noise = 2 * phi.shape[1] - 2, fit.found.noise_of(fit.lam[[r]])[0]
     statistic = _wald(fit, of, np.ones(len(fit.gradient), bool)) / noise
-    return bool(freedom and statistic > chi2.isf(APART, freedom))
+    return bool(freedom and statistic > chdtri(freedom, APART))

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import scipy.linalg as la
 from scipy.optimize import linear_sum_assignment
-from scipy.stats import chi2
+from scipy.special import gammaincinv
 
 from modefront._typing import Floats, Ints
 from modefront.data.modal import ModalData
@@ -103,7 +103,7 @@ def between(x: Floats, std: Floats) -> float:
     x, weight = x[good], 1 / std[good] ** 2
     Q = float(np.sum(weight * (x - np.average(x, weights=weight)) ** 2))
     freedom = len(x) - 1
-    if chi2.ppf(SIGNIFICANT, freedom) >= Q:
+    if 2 * gammaincinv(freedom / 2, SIGNIFICANT) >= Q:
         return 0.0
     return float(np.sqrt((Q - freedom) / (weight.sum() - np.sum(weight**2) / weight.sum())))
 

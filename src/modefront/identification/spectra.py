@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.fft
-import scipy.signal
+import scipy.linalg as la
 
 from modefront._typing import Complexes, Floats
 from modefront.data.modal_test import RECORDED, Records
@@ -63,9 +63,17 @@ class Transforms:
         return Band(middle, count, products, self.order, floor)
 
 
+def _without_trends(values: Floats) -> Floats:
+    """Return records, (sensors, samples), without the straight line that is nearest to each."""
+    samples = values.shape[1]
+    line = np.column_stack([np.arange(1.0, samples + 1) / samples, np.ones(samples)])
+    columns = values.T.copy()
+    return np.asarray((columns - line @ la.lstsq(line, columns)[0]).T)
+
+
 def transforms(records: Records, low: float, high: float) -> Transforms:
     """Return the transforms at the lines of a band in Hz."""
-    y = scipy.signal.detrend(records.values, axis=1)
+    y = _without_trends(records.values)
     samples = y.shape[1]
     f = scipy.fft.rfftfreq(samples, 1 / records.rate)
     kept = (f >= low) & (f <= high) & (f > 0)
@@ -84,7 +92,7 @@ def with_lines(records: Records, omega: Floats, change: Complexes) -> Records:
 
 def half_spectra(records: Records, low: float, high: float) -> tuple[FrequencyResponses, Floats]:
     """Return half spectra within a band in Hz, and their variance up to a factor, (1, 1, lines)."""
-    y = scipy.signal.detrend(records.values, axis=1)
+    y = _without_trends(records.values)
     y = y / np.maximum(y.std(axis=1, keepdims=True), TINY)
     samples = y.shape[1]
     lags = int(min(LAGS * samples, MOST_LINES * records.rate / (high - low)))

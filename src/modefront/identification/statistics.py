@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 import scipy.fft
 import scipy.linalg as la
-from scipy.stats import chi2
+from scipy.special import chdtri
 
 from modefront._typing import Complexes, Floats
 from modefront.identification.modal_model import Fit
@@ -134,7 +134,7 @@ def mode_estimates(fit: Fit, residuals: Residuals, omega: float) -> list[ModeEst
     scale = max(residuals.chi2, 1.0)
     # Some responses show nothing that noise would not make of all shapes.
     known = fit.c[:, None] @ np.linalg.pinv(scale * own, hermitian=True) @ fit.c[..., None]
-    gone = ~fit.task.weight.any(axis=(0, 2)) | (known[:, 0, 0] < chi2.isf(SILENT, n))
+    gone = ~fit.task.weight.any(axis=(0, 2)) | (known[:, 0, 0] < chdtri(n, SILENT))
     out = []
     for r, covariance in enumerate(spread):
         covariance *= scale

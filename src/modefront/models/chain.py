@@ -10,7 +10,7 @@ from dataclasses import replace
 from typing import Annotated
 
 import numpy as np
-from scipy.sparse import csr_array, diags_array, eye_array
+from scipy.sparse import dia_array, diags_array
 
 from modefront import options
 from modefront._typing import Floats
@@ -108,11 +108,10 @@ def chain(
         for name in names
         if name and name not in parameters
     )
-    # A row a spring: how its length depends on the displacements.
-    stretch = diags_array((1.0, -1.0), offsets=(0, -1), shape=(len(stiffnesses), n))
-    K = _terms(stretch.tocsr(), stiffnesses, stiffness_scales)
-    M = _terms(eye_array(n, format="csr"), masses, mass_scales)
-    M[BASE] = diags_array(np.asarray(added, dtype=float)) + M[BASE]
+    K = {name: _springs(k, n) for name, k in _shares(stiffnesses, stiffness_scales).items()}
+    of_masses = _shares(masses, mass_scales)
+    of_masses[BASE] = np.asarray(added, dtype=float) + of_masses[BASE]
+    M = {name: diags_array(m) for name, m in of_masses.items()}
     if sensors is None:
         sensors = {f"floor{i + 1}": i for i in range(n)}
     base = {"x": [(i, 1.0) for i in range(n)]}
@@ -120,11 +119,14 @@ def chain(
     return replace(model, geometry=chain_geometry(n, model.selection))
 
 
-def _terms(B: csr_array, values: Numbers, scales: Names) -> dict[str, csr_array]:
-    """Return the sums of the values v_i b_i^T b_i of rows of B by the names of their scales."""
-    names, out = np.array([name or BASE for name in scales]), {}
-    for name in dict.fromkeys([BASE, *names.tolist()]):
-        chosen = np.flatnonzero(names == name)
-        diagonal = diags_array(np.asarray(values, dtype=float)[chosen])
-        out[name] = (B[chosen].T @ diagonal @ B[chosen]).tocsr()
-    return out
+def _shares(values: Numbers, scales: Names) -> dict[str, Floats]:
+    """Return the values by the names of their scales, each with zeros in place of the others."""
+    names = np.array([name or BASE for name in scales])
+    every = dict.fromkeys([BASE, *names.tolist()])
+    return {name: np.where(names == name, values, 0.0) for name in every}
+
+
+def _springs(k: Floats, n: int) -> dia_array:
+    """Return the stiffness matrix of n masses, of n or n + 1 springs."""
+    below, above = k[:n], np.append(k, 0.0)[1 : n + 1]
+    return dia_array((np.array([below + above, -above, -below]), (0, -1, 1)), shape=(n, n))

@@ -5,7 +5,7 @@ import os
 from collections.abc import Sequence
 from contextlib import AbstractContextManager, suppress
 from dataclasses import replace
-from functools import partial
+from functools import cache, partial
 from itertools import count
 from pathlib import Path
 from typing import Any, Unpack
@@ -197,6 +197,7 @@ def _tasks(study: Study, folder: Path) -> Path:
     return folder / FOLDER / f"{study.work[:12]}-{__version__}-{_program()}"
 
 
+@cache
 def _program() -> str:
     """Return a hash of the program: results that another one has kept may not fit into a run."""
     files = sorted(Path(__file__).parents[1].rglob("*.py"))

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 import scipy.linalg as la
-from scipy.stats import chi2, norm
+from scipy.special import chdtri, ndtri
 
 from modefront._typing import Bools, Floats
 from modefront.data.modal_test import Records
@@ -294,7 +294,7 @@ def _of_group(
         model = fit.model
         omega, zeta, phi = (x[..., : len(held)] for x in (model.omega, model.zeta, model.phi))
         low, high = band.omega[[0, -1]]
-        least = chi2.isf(chance, np.maximum(freedom, len(phi) + 2))
+        least = chdtri(np.maximum(freedom, len(phi) + 2), chance)
         # a mode that left the band, is narrower than a line, doubles a stronger one, or is as flat
         # as the band that its own damping asks for, explains nothing
         astray = (omega < low) | (omega > high) | (last & (4 * zeta * omega > high - low))
@@ -312,7 +312,7 @@ def _of_group(
     else:
         return lines, []
     model, visible = fit.model, _shares(band, fit.model)
-    least = chi2.isf(chance, len(model.phi) + 2)
+    least = chdtri(len(model.phi) + 2, chance)
     explained = not last or spectral_density.excess(band, model) < least
     return lines, [
         Local(
@@ -417,7 +417,7 @@ def _combined(
         (mode, misfit), why = _of_structure(having, sensors), ""
         freedom = sum(local.freedom for _, local in having)
         gain = sum(local.gain for _, local in having) - misfit
-        gain /= float(chi2.isf(FALSE / lines, freedom))
+        gain /= float(chdtri(freedom, FALSE / lines))
         mode = _judged(having, mode, len(setups), gain)
         if not any(local.held for _, local in having):
             why = _harmonic(having)
@@ -496,7 +496,7 @@ def _judged(
 def _harmonic(having: Sequence[tuple[_Setup, Local]]) -> str:
     """Return why a mode is the harmonic of a machine; empty where it is none."""
     z = np.array([(mode.kurtosis[0] - 2) / mode.kurtosis[1] for _, mode in having])
-    if z.sum() / np.sqrt(len(z)) < norm.ppf(HARMONIC):
+    if z.sum() / np.sqrt(len(z)) < ndtri(HARMONIC):
         mean = np.mean([mode.kurtosis[0] for _, mode in having])
         return (
             f"a harmonic: its amplitude is steady (kurtosis {mean:.2f}; 2 for a mode, 1 for a sine)"
