@@ -178,8 +178,8 @@ def other_quantity(old: Explanation) -> Iterator[Mistake]:
 def damping_in_percent(old: Explanation) -> Iterator[Mistake]:
     """Yield damping over 100."""
     if (known := old.state.damping[np.isfinite(old.state.damping)]).size:
-        ends = {"least": float(known.min()), "greatest": float(known.max())}
-        yield Mistake(found("damping", "damping", **ends), [("damping", ..., over(100.0))])
+        said = found("damping", "damping", least=float(known.min()), greatest=float(known.max()))
+        yield Mistake(said, [("damping", ..., over(100.0))])
 
 
 SLIPS = (10.0, 0.1, 100.0, 0.01, 2.0, 0.5)  # factors by a lost decimal point or aliasing
@@ -198,7 +198,7 @@ def wrong_frequency(old: Explanation) -> Iterator[Mistake]:
         q, log = int(old.point.pairs[r]), logs[r] - log_frequencies(f)[old.point.pairs[r]]
         if np.abs(log - np.log(SLIPS)).min() >= REACH:
             slips.append((unknown, float(np.exp(log)), ""))
-        numbers = {"model": q + 1, "f": float(old.fits.comparison.frequency[q])}
+        numbers: dict[str, Any] = {"model": q + 1, "f": float(old.fits.comparison.frequency[q])}
         numbers |= {"alike": alike(old.point.mac[r]), "measured": float(np.exp(logs[r]))}
         for price, factor, looks in slips:
             said = found("far-from-model", str(modes[r]), **numbers, looks=looks)
@@ -250,9 +250,8 @@ def set_factor(old: Explanation) -> Iterator[Mistake]:
         if abs(factor - 1) > 0.4:
             looks = next((x for y, x in LOOKS.items() if abs(np.log(factor / y)) < 0.1), "")
             size, mend = f"{factor:.3g} times", "give all data sets in Hz"
-        numbers = {"set": name, "other": without(k, sets), "size": size, "looks": looks}
-        said = found("set-factor", name, **numbers, mend=mend)
-        yield Mistake(said, [("frequency", k, over(factor))])
+        said = {"set": name, "other": without(k, sets), "size": size, "looks": looks, "mend": mend}
+        yield Mistake(Finding("set-factor", name, said), [("frequency", k, over(factor))])
 
 
 def other_numbers(old: Explanation) -> Iterator[Mistake]:
@@ -274,7 +273,7 @@ def other_numbers(old: Explanation) -> Iterator[Mistake]:
             numbers = {"set": name, "other": without(k, sets), "modes": own, "of": right}
             order = partial(np.take, indices=np.argsort(index), axis=0)
             edits = [(x, k, order) for x in of_sets]
-            yield Mistake(found("set-numbers", name, **numbers), edits, moves=True)
+            yield Mistake(Finding("set-numbers", name, numbers), edits, moves=True)
 
 
 WRONG = {"frequency": 0.2, "shape": 1.0}  # scale of wrong values: of ln f, and of shapes
@@ -300,7 +299,7 @@ def odd_value(old: Explanation) -> Iterator[Mistake]:
                 who = f"sets {sets[known[1]]} and {sets[known[0]]} disagree"
                 look = "look at both again, or leave out the worse"
                 other, value = f[known]
-            numbers = {"f": float(value), "other": float(other)}
+            numbers: dict[str, Any] = {"f": float(value), "other": float(other)}
             numbers["percent"] = float(100 * (value / other - 1))
             said = found(f"odd-{part}", subject, mode=mode, who=who, look=look, **numbers)
             yield Mistake(said, [(part, np.s_[k, r], np.nan)], cost=count[k] * np.log(wrong))
@@ -335,11 +334,9 @@ def later_mode(old: Explanation) -> Iterator[Mistake]:
         later, modes = int(free.pairs[r]) + 1, old.data.modes
         numbers = {"later": later, "f": float(old.fits.comparison.frequency[later - 1])}
         numbers |= {"mac": free.mac[r], "best": own.mac[r], "spare": later - len(modes)}
-        said, price = (
-            found("beyond-candidates", str(modes[r]), **numbers),
-            f.size - state.candidates,
-        )
-        yield Mistake(said, [("candidates", ..., later)], float(np.log(price)))
+        said = Finding("beyond-candidates", str(modes[r]), numbers)
+        price = float(np.log(f.size - state.candidates))
+        yield Mistake(said, [("candidates", ..., later)], price)
 
 
 MEMBERS = 2  # members that are tried: those of which the cost is less ahead of a step
@@ -373,7 +370,7 @@ def wrong_unit(old: Explanation) -> Iterator[Mistake]:
     parts = enumerate(old.fits.parts if not old.state.part else ())
     for (k, part), power in product([x for x in parts if x[1].whole], THOUSANDS):
         numbers = {"what": part.of, "place": part.place, "factor": 10.0**-power}
-        said = found("wrong-unit", f"{part.of} {part.place}", **numbers)
+        said = Finding("wrong-unit", f"{part.of} {part.place}", numbers)
         yield Mistake(said, [("start", -1, 10.0**power), ("part", ..., k + 1)])
 
 
@@ -540,7 +537,7 @@ def wrong_place(old: Explanation) -> Iterator[Mistake]:
     """Yield sensors at other nodes, directions kept; in a chain, at other degrees of freedom."""
     state, fits, names = old.state, old.fits, old.data.sensors
     given, along, rows = state.nodes, state.along, fits.rows(state)
-    can = fits.moves.any(axis=2)  # nodes x axes
+    can = np.asarray(fits.moves.any(axis=2))  # nodes x axes
     there = {s: np.flatnonzero(can[:, along[s] != 0].any(axis=1)) for s in old.measured}
     phi = old.modes.phi[:, old.point.pairs] * old.point.beta
     shapes = (fits.moves @ phi).transpose(2, 0, 1)
@@ -579,7 +576,7 @@ def wrong_direction(old: Explanation) -> Iterator[Mistake]:
     for some, turn in turned:
         each = given[some], given[some] @ turn
         before, after = (list(dict.fromkeys(map(axis_name, x))) for x in each)
-        numbers = {"sensors": enumeration([names[s] for s in some], MANY)}
+        numbers: dict[str, Any] = {"sensors": enumeration([names[s] for s in some], MANY)}
         numbers |= {"s": "s" * (len(some) == 1), "turn": " in turn" * (len(after) > 1)}
         numbers |= {"given": enumeration(before), "better": enumeration(after)}
         said = found("wrong-direction", ", ".join(names[s] for s in some), **numbers)

@@ -81,8 +81,8 @@ class Search:
             price = float(np.log(len(every) / PROBABILITY[kind]))
             new, most = [x for x in every if x.claim not in old.claims], PROMISING[kind]
             if len(new) > most:  # those without which modes are most like the model's
-                states = (one.undone(old.state) for one in new)
-                far = self.fits.unlike(states, old.point.x, old.state.start)
+                given = (one.undone(old.state) for one in new)
+                far = self.fits.unlike(given, old.point.x, old.state.start)
                 new = [new[k] for k in np.flatnonzero(far <= np.sort(far)[most - 1])]
             some += [replace(x, price=x.price + price) for x in new]
         if not some:
@@ -213,6 +213,6 @@ def distant_pairs(search: Search, named: Iterable[Mistake]) -> Iterator[Finding]
     for r in np.flatnonzero(changed).tolist():
         q, near, value = int(pairs.index[r]), int(mended.index[r]), float(pairs.mac[r])
         if str(data.modes[r]) not in [one.finding.subject for one in foreign]:
-            numbers = {"measured": float(np.exp(state.logs[r])), "alike": alike(value)}
-            numbers |= {"model": q + 1, "f": float(f[q]), "near": near + 1}
-            yield found("distant-pair", str(data.modes[r]), **numbers, there=float(f[near]))
+            measured = {"measured": float(np.exp(state.logs[r])), "alike": alike(value)}
+            model = {"model": q + 1, "f": float(f[q]), "near": near + 1, "there": float(f[near])}
+            yield Finding("distant-pair", str(data.modes[r]), {**measured, **model})
