@@ -13,8 +13,7 @@ from modefront._typing import Floats
 from modefront.data.modal import ModalData, modal_data
 from modefront.diagnosis.comparison import compare
 from modefront.diagnosis.evidence import Fits, step
-from modefront.diagnosis.mistakes.record import Explanation
-from modefront.diagnosis.mistakes.values import other_quantity
+from modefront.diagnosis.mistakes import Explanation, other_quantity
 from modefront.diagnosis.state import SPREAD, State, median, scaled, stacked
 from modefront.models.chain import chain
 from modefront.residuals.groups import Group
@@ -86,23 +85,25 @@ def test_a_fit_finds_the_structure_from_which_the_data_come() -> None:
     theta = np.array([1.2, 0.8, 1.1])
     fits = fits_of(theta)
     (result,) = fits.fitted([fits.plain])
-    found = fits.plain.theta(result.x)
+    found = fits.theta(fits.plain, result.x)
     np.testing.assert_allclose(found[:3], theta, rtol=0.03)
     assert found[3] == 1.0, "no member is scaled"
-    rows = fits.plain.rows.copy()
-    rows[2] *= -1
-    both = stacked([fits.plain, replace(fits.plain, rows=rows)])
+    along = fits.plain.along.copy()
+    along[2] *= -1
+    both = stacked([fits.plain, replace(fits.plain, along=along)])
     right, reversed_ = fits.at(both, np.stack([result.x] * 2)).ahead
     assert right == pytest.approx(result.cost, abs=0.1)
     assert reversed_ > result.cost + 10
 
 
 def test_parameters_are_the_same_beside_other_nominal_values() -> None:
-    plain = replace(fits_of(np.ones(3)).plain, unit=np.array([0.0, 2.0, 0.0, 0.0]))
+    fits = fits_of(np.ones(3))
+    fits.unit, plain = np.array([0.0, 2.0, 0.0]), fits.plain
     x = np.array([0.3, -0.5, 0.1, 0.0])
     off = replace(plain, start=np.array([10.0, 0.0, 0.1, 1.0]))
-    np.testing.assert_allclose(plain.x(plain.theta(x)), x)
-    np.testing.assert_allclose(off.theta(off.x(plain.theta(x))), plain.theta(x))
+    np.testing.assert_allclose(fits.x(plain, fits.theta(plain, x)), x)
+    same = fits.theta(off, fits.x(off, fits.theta(plain, x)))
+    np.testing.assert_allclose(same, fits.theta(plain, x))
 
 
 def test_the_cost_ahead_is_between_those_before_and_after_a_step() -> None:
@@ -148,9 +149,8 @@ def test_explanations_cost_the_same_together_and_alone() -> None:
 def test_explanations_start_from_the_better_of_two_starts() -> None:
     """Where the model has no modes, a cost is infinite."""
     fits = fits_of(np.array([1.2, 0.8, 1.1]))
-    plain = replace(fits.plain, unit=np.array([1.0, 1.0, 1.0, 0.0]))
-    start, x = np.array([-5.0, -5.0, -5.0, 1.0]), np.array([0.2, -0.2, 0.1, 0.0])
-    states = [plain, replace(plain, start=start)]
+    fits.unit, plain, x = np.ones(3), fits.plain, np.array([0.2, -0.2, 0.1, 0.0])
+    states = [plain, replace(plain, start=np.array([-5.0, -5.0, -5.0, 1.0]))]
     ((_, begun),) = fits.begun(states, (plain, x))
     np.testing.assert_allclose(begun.x[0], x)
     assert np.isinf(begun.ahead).tolist() == [False, True]
@@ -169,4 +169,4 @@ def test_values_that_scatter_little_are_no_more_probable_as_eigenvalues() -> Non
     fits = Fits(compare(UpdatingProblem(model, data, groups, one / 5, 5 * one, one)))
     point = fits.at(stacked([fits.plain]), np.zeros((1, 2))).of(0)
     for mistake in other_quantity(Explanation(fits, (), fits.plain, point, 0.0)):
-        assert mistake.change(fits.plain).noise > fits.plain.noise - 1e-6
+        assert mistake.undone(fits.plain).noise > fits.plain.noise - 1e-6

@@ -12,8 +12,7 @@ from modefront._typing import Floats
 from modefront.data.modal import modal_data
 from modefront.diagnosis.comparison import compare
 from modefront.diagnosis.evidence import Fits
-from modefront.diagnosis.mistakes.record import Explanation, changed
-from modefront.diagnosis.mistakes.sensors import shifted_values
+from modefront.diagnosis.mistakes import Explanation, odd_sensor, shifted_values
 from modefront.diagnosis.search import diagnose
 from modefront.diagnosis.state import NOTHING
 from modefront.findings.record import Finding
@@ -149,11 +148,13 @@ def test_a_mistake_beside_lost_cells_is_of_the_columns_as_they_are_mended_or_as_
 def test_values_cost_the_same_whatever_leaves_them_out() -> None:
     fits = Fits(compare(problem_of()))
     plain = fits.plain
-    without = changed("shape", np.s_[..., 7], np.nan)(plain)
-    assert without.left_out == pytest.approx(5 * NOTHING)
     (point,) = fits.fitted([plain])
-    for mistake in shifted_values(Explanation(fits, (), plain, point, 0.0)):
-        lost = np.isfinite(plain.shape).sum() - np.isfinite(mistake.change(plain).shape).sum()
-        assert mistake.change(plain).left_out == pytest.approx(NOTHING * lost)
-        twice = mistake.change(replace(plain, left_out=np.ones(())))
+    old = Explanation(fits, (), plain, point, 0.0)
+    *_, noise = odd_sensor(old)
+    assert noise.undone(plain).left_out == pytest.approx(5 * NOTHING)
+    for mistake in shifted_values(old):
+        new = mistake.undone(plain)
+        lost = np.isfinite(plain.shape).sum() - np.isfinite(new.shape).sum()
+        assert new.left_out == pytest.approx(NOTHING * lost)
+        twice = mistake.undone(replace(plain, left_out=np.ones(())))
         assert twice.left_out == pytest.approx(1 + NOTHING * lost)

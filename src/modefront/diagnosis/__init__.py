@@ -1,6 +1,6 @@
 r"""Mistakes of models and data, found as the hypotheses that explain the measured modes best.
 
-A mistake is a record (`modefront.diagnosis.mistakes`): how it changes the data or the model, its
+A mistake is a record (`modefront.diagnosis.mistakes`): the edits of data or model that undo it, its
 price, its sentence and what mends it. One search (`modefront.diagnosis.search`) tries all of them,
 alone and together, and one cost decides (`modefront.diagnosis.evidence`):
 

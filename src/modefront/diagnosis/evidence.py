@@ -13,16 +13,17 @@ logarithms where their bounds are positive. They are fitted by Gauss-Newton step
 :math:`(\nu + 1) / (\nu + r_k^2 / \sigma^2)`, the pairs taken anew at every step.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from dataclasses import replace
-from functools import cache, lru_cache, partial
+from functools import cache, lru_cache
+from itertools import islice
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
-import scipy.sparse
+from scipy.sparse import csr_array
 
-from modefront._typing import Bools, Floats, Ints
+from modefront._typing import Floats, Ints
 from modefront.diagnosis.comparison import Comparison
 from modefront.diagnosis.members import Part, parts_of, with_factors
 from modefront.diagnosis.state import State, loss, ratio, scaled, stacked
@@ -112,31 +113,34 @@ class Fits:
 
     def __init__(self, comparison: Comparison) -> None:
         self.comparison, problem, data = comparison, comparison.problem, comparison.data
-        matrices = comparison.matrices
+        matrices, sensors = comparison.matrices, len(data.sensors)
         count = min(problem.model.size, comparison.frequency.size)
         model: Any = problem.model
-        geometry, rows, self.parts = None, np.eye(len(data.sensors)), list[Part]()
-        moves = np.zeros((0, 3, len(rows)))
+        # Of a model without matrices, nothing is known but how it moves its sensors.
+        self.given, self.parts = np.eye(sensors), list[Part]()
+        self.geometry = chain_geometry(sensors, csr_array(self.given))
+        self.moves = np.zeros((sensors + 2, 3, sensors))
         if matrices is not None:
-            geometry = matrices.geometry
-            if geometry is None or len(geometry.axes) == 1:
-                geometry = chain_geometry(matrices.size, matrices.selection)
+            if matrices.geometry is None or len(matrices.geometry.axes) == 1:
+                self.geometry = chain_geometry(matrices.size, matrices.selection)
+            else:
+                self.geometry = matrices.geometry
             model, basis = in_space_of_modes(matrices, count, problem)
-            self.parts = parts_of(matrices, basis)
-            rows = matrices.selection @ basis
-            moves = (geometry.motion @ basis).reshape(-1, 3, basis.shape[1])
-        std = ratio(data.frequency_std, data.frequency)
-        std, candidates = np.where(std > 0, std, np.nan), np.array(comparison.candidates)
+            self.parts, self.given = parts_of(matrices, basis), matrices.selection @ basis
+            moves = (self.geometry.motion @ basis).reshape(-1, 3, basis.shape[1])
+            self.moves = np.concatenate([moves, 0 * moves[:1]])
         start, ends = problem.start, np.stack([problem.lower, problem.upper])
         positive, size = ends[0] > 0, np.where(start == 0, ends[1] - ends[0], np.abs(start))
         logs = np.log(np.where(positive, ends / size, 1.0)) + np.log([[1 / WIDER], [WIDER]])
-        self.ends, unit = np.where(positive, logs, (ends - start) / size), size * ~positive
+        self.ends, self.unit = np.where(positive, logs, (ends - start) / size), size * ~positive
         if self.parts:
-            start, unit = np.append(start, 1.0), np.append(unit, 0.0)
+            start = np.append(start, 1.0)
             self.ends = np.column_stack([self.ends, np.log([1 / FACTOR, FACTOR])])
-        measured = data.frequency, data.damping, data.shape, std
+        std = ratio(data.frequency_std, data.frequency)
         self.plain = State(
-            *measured, np.zeros(()), candidates, rows, np.array(0), start, unit, moves, geometry
+            *(data.frequency, data.damping, data.shape, np.where(std > 0, std, np.nan)),
+            *(np.zeros(()), np.array(comparison.candidates)),
+            *(self.geometry.sensor_nodes, self.geometry.sensor_directions, np.array(0), start),
         )
         self.together = max(1, NUMBERS // (data.shape.size * (1 + len(start))))
 
@@ -146,28 +150,48 @@ class Fits:
             some = self.parts if part == ALL else self.parts[part - 1 : part] if part else ()
             return with_factors(model, some) if self.parts else model
 
-        def solved(derivatives: bool, part: int, theta: bytes) -> Modes | None:
-            """Return the modes at parameters; None where there are none."""
+        @lru_cache(max(64, KEPT // (self.given.shape[1] * count * (1 + len(start)))))
+        def solved(part: int, theta: bytes, derivatives: bool) -> Modes | None:
             with suppress(ModelError):
                 modes = scaled(part).modes(np.frombuffer(theta), count, derivatives=derivatives)
                 slopes = (modes.dlam, modes.dphi) if derivatives else ()
                 return modes if all(np.isfinite(x).all() for x in slopes) else None
             return None
 
-        numbers = KEPT // (sum(rows.shape) * count)
-        self.modes = lru_cache(max(64, numbers // (1 + len(start))))(partial(solved, True))
-        self.alone = lru_cache(max(64, numbers))(partial(solved, False))
+        self._solved = solved
         self.nominal = self.of(self.plain, 0 * start)
 
-    def of(self, state: State, x: Floats) -> Modes | None:
-        """Return the modes of a state at parameters x, with their slopes; None where none."""
-        return self.modes(int(state.part), state.theta(x).tobytes())
+    def of(self, state: State, x: Floats, *, derivatives: bool = True) -> Modes | None:
+        """Return the modes of a state, at all coordinates, at parameters x; None where none."""
+        return self._solved(int(state.part), self.theta(state, x).tobytes(), derivatives)
+
+    def units(self, count: int) -> Floats:
+        """Return units of what is added to parameters; 0 where factors change them, as of parts."""
+        return np.pad(self.unit, (0, count - self.unit.size))
+
+    def theta(self, state: State, x: Floats) -> Floats:
+        """Return parameters with logarithms x of the factors, or x units more, than nominal."""
+        unit = self.units(x.shape[-1])
+        return np.asarray(state.start * np.exp(np.where(unit == 0, x, 0.0)) + unit * x)
+
+    def x(self, state: State, theta: Floats) -> Floats:
+        """Return x of parameters."""
+        unit = self.units(theta.size)
+        factors = np.where(unit == 0, ratio(theta, state.start), 1.0)
+        return np.log(factors) + ratio(theta - state.start, unit)
+
+    def rows(self, state: State) -> Floats:
+        """Return weights (..., sensors, n) of the coordinates of the model's modes at sensors."""
+        rows = np.tile(self.given, (*state.nodes.shape[:-1], 1, 1))
+        turned = (state.along != self.geometry.sensor_directions).any(axis=-1)
+        moved = (state.nodes != self.geometry.sensor_nodes) | turned
+        rows[moved] = np.einsum("si,sin->sn", state.along[moved], self.moves[state.nodes[moved]])
+        return rows
 
     def by_parts(self, state: State, x: Floats) -> tuple[Floats, Floats]:
         """Return the cost ahead with a factor on each part, and its log's step, by one model."""
         p, q = x.size - 1, len(self.parts)
-        start, unit = np.append(state.start[:p], np.ones(q)), np.append(state.unit[:p], np.zeros(q))
-        wide = replace(state, start=start, unit=unit, part=np.array(ALL))
+        wide = replace(state, start=np.append(state.start[:p], np.ones(q)), part=np.array(ALL))
         end = self.at(stacked([wide]), np.append(x[:p], np.zeros(q))[None]).of(0)
         own = np.column_stack([np.tile(np.arange(p), (q, 1)), p + np.arange(q)])
         g, H = end.g[own], end.H[own[:, :, None], own[:, None]]
@@ -175,35 +199,43 @@ class Fits:
         ahead = end.cost + (g * dx + (H @ dx[..., None])[..., 0] * dx / 2).sum(axis=1)
         return ahead, dx[:, -1]
 
-    def unlike(self, states: Sequence[State], x: Floats, start: Floats) -> Floats:
+    def batches(self, states: Iterable[State]) -> Iterator[State]:
+        """Yield states as one, so many together as fit into the memory."""
+        left = iter(states)
+        while some := list(islice(left, self.together)):
+            yield stacked(some)
+
+    def unlike(self, states: Iterable[State], x: Floats, start: Floats) -> Floats:
         """Return how far by c all modes of all sets are from the nearest of a model, by states.
 
         The model is at parameters x beside nominal values ``start``, else at those of the state.
         """
-        state = stacked(states)
-        x = x * (state.start == start).all(axis=1, keepdims=True)
-        _, exists, frequency, phi = self._solved(self.alone, state, x)
-        mac, logs = mac_values(state.psi, state.seen, phi[:, None]), log_frequencies(frequency)
-        cost = pair_costs(mac, np.log(state.frequency), logs[:, None]).min(axis=-1)
-        return np.where(exists, cost.sum(axis=(-2, -1)), np.inf)
+        out = []
+        for state in self.batches(states):
+            there = x * (state.start == start).all(axis=1, keepdims=True)
+            _, exists, frequency, _, phi = self._modes(state, there, derivatives=False)
+            mac, logs = mac_values(state.psi, state.seen, phi[:, None]), log_frequencies(frequency)
+            cost = pair_costs(mac, np.log(state.frequency), logs[:, None]).min(axis=-1)
+            out.append(np.where(exists, cost.sum(axis=(-2, -1)), np.inf))
+        return np.concatenate(out)
 
-    def _solved(self, solve: Any, state: State, x: Floats) -> tuple[Any, Bools, Floats, Floats]:
-        """Return the modes of states, where there are any, their frequencies and sensors' shapes.
+    def _modes(self, state: State, x: Floats, *, derivatives: bool) -> tuple[Any, ...]:
+        """Return modes of states, whether there are any, their frequencies, sensors' rows, shapes.
 
         Those of the nominal model stand where there are none.
         """
-        thetas = zip(state.part.tolist(), state.theta(x), strict=True)
-        found = [solve(part, theta.tobytes()) for part, theta in thetas]
+        thetas = zip(state.part.tolist(), self.theta(state, x), strict=True)
+        found = [self._solved(part, theta.tobytes(), derivatives) for part, theta in thetas]
         modes: Any = [each or self.nominal for each in found]
-        phi = state.rows @ np.stack([each.phi[-state.rows.shape[2] :] for each in modes])
-        frequency = np.stack([each.frequency for each in modes])
-        return modes, np.array([bool(each) for each in found]), frequency, phi
+        frequency, rows = np.stack([each.frequency for each in modes]), self.rows(state)
+        phi = rows @ np.stack([each.phi for each in modes])
+        return modes, np.array([bool(each) for each in found]), frequency, rows, phi
 
     # More than 60 lines: the cost and its slopes share all residuals.
     def at(self, state: State, x: Floats, pairs: Any = None) -> Points:
         """Return states at parameters x, with best or given pairs; no modes cost infinity."""
-        modes, exists, frequency, phi = self._solved(self.modes, state, x)
-        logs, (n, s, _) = log_frequencies(frequency), state.rows.shape
+        modes, exists, frequency, rows, phi = self._modes(state, x, derivatives=True)
+        logs, n = log_frequencies(frequency), len(x)
         known, c, scale = state.known, state.mean, state.motion[:, None]
         mac = mac_values(c, known, phi)
         if pairs is None:
@@ -226,21 +258,20 @@ class Fits:
         prior = loss(x / OFF, OF_PARAMETERS).sum(axis=-1)
         total = np.where(exists, of_shapes + of_frequencies + prior + state.noise, np.inf)
         # The slopes of all residuals, each times the root of its weight.
-        moved = (state.rows != self.plain.rows).any(axis=(1, 2))
-        of_each = list(zip(modes, pairs, state.rows, moved, strict=True))
-        dphi = [first_axis(R, m.dphi[s:, i]) if far else m.dphi[:s, i] for m, i, R, far in of_each]
-        D = np.stack(dphi).swapaxes(1, 2)
+        of_each = list(zip(modes, pairs, rows, strict=True))
+        D = np.stack([first_axis(R, m.dphi[:, i]) for m, i, R in of_each]).swapaxes(1, 2)
         square = (weight * chi**2).sum(axis=-1)[..., None, None]
         D = D - chi[..., None] * ratio((weight * chi)[:, :, None] @ D, square)
         r_s /= sigma[:, None, None]
         r_f, of_f = r_f / sigma_f[:, None], elastic / sigma_f[:, None]
         root_s, root_f = (np.sqrt((OF_MODEL + 1) / (OF_MODEL + r**2)) for r in (r_s, r_f))
         D *= (used * root_s * beta / scale / sigma[:, None, None])[..., None]
-        df = np.stack([m.dfrequency[i] for m, i, _, _ in of_each])
+        df = np.stack([m.dfrequency[i] for m, i, _ in of_each])
         df = ratio(df, f[..., None]) * (of_f * root_f)[..., None]
         J = np.concatenate([D.reshape(n, -1, x.shape[1]), df], axis=1)
         r = np.concatenate([(root_s * r_s).reshape(flat.shape), root_f * r_f], axis=1)
-        unit = np.where(state.unit == 0, state.theta(x), state.unit)
+        unit = self.units(x.shape[1])
+        unit = np.where(unit == 0, self.theta(state, x), unit)
         of_prior = (OF_PARAMETERS + 1) / (OF_PARAMETERS + (x / OFF) ** 2) / OFF**2
         g = unit * (r[:, None] @ J)[:, 0] + of_prior * x
         H = unit[:, :, None] * (J.swapaxes(1, 2) @ J) * unit[:, None]
@@ -249,19 +280,22 @@ class Fits:
         ahead = total + ((g[..., None] + H @ dx / 2) * dx).sum(axis=(1, 2))
         return Points(x, total, ahead, pairs, mac, beta[..., 0], sigma, g, H)
 
-    def begun(self, states: Sequence[State], near: Near = None) -> Iterator[tuple[State, Points]]:
+    def begun(self, states: Iterable[State], near: Near = None) -> Iterator[tuple[State, Points]]:
         """Yield states after states, from nominal or another state's parameters, the better."""
-        for first in range(0, len(states), self.together):
-            state = stacked(states[first : first + self.together])
+        for state in self.batches(states):
             best = self.at(state, 0 * state.start)
             if near:
                 other, x = near
-                new = self.at(state, np.clip(state.x(other.theta(x)), *self.ends))
+                new = self.at(state, np.clip(self.x(state, self.theta(other, x)), *self.ends))
                 better = np.flatnonzero(new.ahead < best.ahead)
                 best.update(better, new.of(better))
             yield state, best
 
-    def fitted(self, states: Sequence[State], near: Near = None) -> list[Points]:
+    def ahead(self, states: Iterable[State], near: Near) -> Floats:
+        """Return the costs of states after a first step of their fits."""
+        return np.concatenate([best.ahead for _, best in self.begun(states, near)])
+
+    def fitted(self, states: Iterable[State], near: Near = None) -> list[Points]:
         """Return the points at the end of fits, each from the better one of its starts."""
         out: list[Points] = []
         for state, here in self.begun(states, near):
@@ -283,7 +317,7 @@ class Fits:
 def in_space_of_modes(
     matrices: MatrixModel, count: int, problem: UpdatingProblem
 ) -> tuple[MatrixModel, Floats]:
-    """Return a model with its coordinates as further sensors, and its basis V (N, n).
+    """Return a model with its coordinates as sensors, and its basis V (N, n).
 
     A large one is reduced to modes at the nominal parameters and at others by chance.
     """
@@ -302,5 +336,4 @@ def in_space_of_modes(
         A = getattr(sparse, name)
         terms = A.project([V], V)
         parts[name] = DenseAffine((terms + terms.transpose(0, 2, 1)) / 2, A.coefficients)
-    rows = np.vstack([matrices.selection @ V, np.eye(V.shape[1])])
-    return replace(matrices, selection=scipy.sparse.csr_array(rows), **parts), V
+    return replace(matrices, selection=csr_array(np.eye(V.shape[1])), **parts), V

@@ -1,19 +1,24 @@
 """The search over mistakes: best first, alone and together, and what of it is certain."""
 
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
-from functools import partial
-from itertools import chain, combinations, pairwise, product
+from functools import reduce
+from itertools import chain, combinations, pairwise
 from operator import attrgetter
-from typing import TypeAlias
 
 import numpy as np
 
 from modefront.diagnosis.comparison import Comparison, of_few_sets
 from modefront.diagnosis.evidence import ENOUGH, Fits
-from modefront.diagnosis.mistakes import sensors, values
-from modefront.diagnosis.mistakes.record import IMPRECISE, Explanation, Mistake
+from modefront.diagnosis.mistakes import (
+    FOREIGN,
+    MISTAKES,
+    PROBABILITY,
+    Explanation,
+    Mistake,
+    alike,
+)
 from modefront.diagnosis.state import State, stacked
 from modefront.findings.knowledge import enumeration
 from modefront.findings.record import Finding, found
@@ -31,34 +36,6 @@ LEFT = 1.0  # difference of costs that fits leave
 NEAR = 2 * CLEAR  # difference of costs up to which explanations of several mistakes are fitted
 SEEN = 0.02  # increase of a MAC value that is worth its name
 
-Kinds: TypeAlias = tuple[Callable[[Explanation], Iterator[Mistake]], ...]
-
-MISTAKES: Kinds = (
-    *(values.frequency_factor, values.other_quantity, values.set_factor, values.other_numbers),
-    *(values.exchanged_shapes, sensors.wrong_factor, sensors.exchanged_sensors),
-    *(sensors.opposite_order, sensors.unsigned_shapes, sensors.copied_sensor),
-    *(sensors.shifted_values, sensors.counted_from_one, sensors.wrong_direction),
-    *(sensors.wrong_place, sensors.reversed_value, sensors.odd_sensor),
-    *(values.wrong_nominal_value, values.odd_value, values.wrong_frequency),
-    *(values.damping_in_percent, values.foreign_mode, values.later_mode),
-    *(values.wrong_unit, values.wrong_member),
-)
-"""What is looked for; where two explain the data equally well, the first one is tried first."""
-
-SOUGHT: tuple[Kinds, Kinds] = MISTAKES, (partial(values.wrong_member, usual=True),)
-"""Mistakes, and what is none and is looked for once these are found."""
-
-USUAL, OFTEN = 0.02, 0.05
-PROBABILITY = defaultdict(
-    lambda: USUAL,
-    {"frequency-factor": OFTEN, "reversed-sensor": OFTEN, "wrong-direction": OFTEN}
-    | {"odd-frequency": OFTEN, "odd-shape": OFTEN, "far-from-model": OFTEN, "damping": OFTEN}
-    | {"other-quantity": 0.005, "copied-sensor": 0.5, IMPRECISE: OFTEN},
-)
-"""Probability with which a study has a mistake of a kind; with the same digits twice, a copy."""
-
-FOREIGN = ("foreign-mode", "outside-model")  # kinds that leave out all of a mode
-
 COST = attrgetter("cost")
 
 
@@ -74,9 +51,7 @@ def key_of(mistakes: Sequence[Mistake]) -> object:
 
 def undone(state: State, mistakes: Iterable[Mistake]) -> State:
     """Return the state without some mistakes."""
-    for each in mistakes:
-        state = each.change(state)
-    return state
+    return reduce(lambda given, each: each.undone(given), mistakes, state)
 
 
 class Search:
@@ -96,20 +71,24 @@ class Search:
                 key, new = key_of(mistakes), Explanation(self.fits, mistakes, state, at, cost)
                 self.known[key] = min(self.known.get(key, new), new, key=COST)
 
-    def extend(self, old: Explanation, sought: Kinds) -> None:
-        """Fit the most promising explanations with a mistake more of those sought."""
+    def extend(self, old: Explanation) -> None:
+        """Fit the most promising explanations with a mistake more."""
         kinds = defaultdict(list)
-        for one in chain.from_iterable(find(old) for find in sought):
-            kinds[one.kind].append(one)
-        some = []
+        for one in chain.from_iterable(find(old) for find in MISTAKES):
+            kinds[one.finding.kind].append(one)
+        some = list[Mistake]()
         for kind, every in kinds.items():
             price = float(np.log(len(every) / PROBABILITY[kind]))
-            new = self._alike([x for x in every if x.claim not in old.claims], PROMISING[kind], old)
+            new, most = [x for x in every if x.claim not in old.claims], PROMISING[kind]
+            if len(new) > most:  # those without which modes are most like the model's
+                given = (one.undone(old.state) for one in new)
+                far = self.fits.unlike(given, old.point.x, old.state.start)
+                new = [new[k] for k in np.flatnonzero(far <= np.sort(far)[most - 1])]
             some += [replace(x, price=x.price + price) for x in new]
         if not some:
             return
         tried = [((*old.mistakes, one), one) for one in some]
-        states = [one.change(old.state) for one in some]
+        states = [one.undone(old.state) for one in some]
         for one, state in list(zip(some, states, strict=True)) if old.mistakes else ():
             if any(x.moves for x in (*old.mistakes, one)):  # others may be said of values as given
                 first = undone(self.fits.plain, (one, *old.mistakes))
@@ -117,22 +96,11 @@ class Search:
                     tried.append(((one, *old.mistakes), one))
                     states.append(first)
         # Parameters have made up for mistakes: what one costs where these are says little.
-        begun = self.fits.begun(states, (old.state, old.point.x))
-        costs = np.concatenate([each.ahead for _, each in begun])
+        costs = self.fits.ahead(states, (old.state, old.point.x))
         costs += [one.price + mixed(mistakes) for mistakes, one in tried]
         near = min(map(COST, self.known.values())) + NEAR if old.mistakes else np.inf
         first = np.argsort(costs, kind="stable")[:FITTED].tolist()
         self.fit([tried[k][0] for k in first if costs[k] < near], old)
-
-    def _alike(self, some: list[Mistake], most: int, old: Explanation) -> list[Mistake]:
-        """Return mistakes; of many, those without which modes are most like those of the model."""
-        if len(some) <= most:
-            return some
-        together, costs = self.fits.together, list[float]()
-        for k in range(0, len(some), together):
-            states = [one.change(old.state) for one in some[k : k + together]]
-            costs += self.fits.unlike(states, old.point.x, old.state.start).tolist()
-        return [some[k] for k in np.flatnonzero(costs <= np.sort(costs)[most - 1])]
 
     def best(self) -> Explanation | None:
         """Return the best explanation; the best ones are extended, the first one first."""
@@ -144,33 +112,28 @@ class Search:
             best = min(self.known.values(), key=COST)
             alone = sorted((x for x in self.known.values() if len(x.mistakes) == 1), key=COST)
             fewer = list(combinations(best.mistakes, max(len(best.mistakes) - 1, 0)))
-            tried = {key_of(some): some for some in fewer}
-            for one in (x.mistakes[0] for x in alone if x.claims <= best.claims):
-                some = tuple(one if x.claim == one.claim else x for x in best.mistakes)
-                tried[key_of(some)] = some
-            self.fit([some for key, some in tried.items() if key not in self.known], best)
+            swaps = [x.mistakes[0] for x in alone if x.claims <= best.claims]
+            swapped = [[y if x.claim == y.claim else x for x in best.mistakes] for y in swaps]
+            tried = (*fewer, *map(tuple, swapped))
+            self.fit([some for some in tried if key_of(some) not in self.known], best)
             # What one explains may be hidden by another one, so that it is not worth its price. A
             # fitted factor on a part gains by chance.
-            gains = (x for x in alone if x.point.cost < plain.point.cost - LEFT)
-            gaining = [x for x in gains if not x.state.part]
+            least = plain.point.cost - LEFT
+            gaining = [x for x in alone if x.point.cost < least and not x.state.part]
             firsts = sorted({x.claims: x for x in reversed(gaining)}.values(), key=COST)[:BEAM]
             same = [x for x in self.known.values() if x.claims == best.claims]
             near = [x for x in sorted(same, key=COST, reverse=True) if x.cost < best.cost + CLEAR]
             unlike = list({x.cost // ENOUGH: x for x in near}.values())[: -BEAM - 1 : -1]
             level = [(), *(x.mistakes for x in (*firsts, *unlike)), *fewer]
             keys = [key_of(some) for some in level if len(some) < MOST]
-            fitted = [self.known[key] for key in keys if key in self.known]
-            todo = product(SOUGHT, (x for x in fitted if x.claims == x.blamed))
-            new = next((x for x in todo if (x[0], key_of(x[1].mistakes)) not in extended), None)
-            if new is not None:
-                sought, old = new
-                extended.add((sought, key_of(old.mistakes)))
-                self.extend(old, sought)
+            fitted = (self.known[key] for key in keys if key in self.known and key not in extended)
+            if new := next((x for x in fitted if x.claims == x.blamed), None):
+                extended.add(key_of(new.mistakes))
+                self.extend(new)
                 continue
             # A rival may only have been fitted from where its way is barred.
             rivals = list(self.known.values())
-            begun = self.fits.begun([x.state for x in rivals], (best.state, best.point.x))
-            costs = np.concatenate([each.ahead for _, each in begun])
+            costs = self.fits.ahead([x.state for x in rivals], (best.state, best.point.x))
             nearer = costs < np.array([x.point.cost for x in rivals]) - ENOUGH
             self.fit([rivals[k].mistakes for k in np.flatnonzero(nearer)], best)
             if min(map(COST, self.known.values())) > best.cost - ENOUGH:
@@ -189,7 +152,7 @@ class Search:
         for one in (x for x in best.mistakes if x.claim in best.blamed):
             rest = best.blamed - {one.claim}
             # What may be instead, and of it, and of the mistake itself, what is better.
-            firsts, swaps = dict[tuple[str, ...], Mistake](), dict[object, Mistake]()
+            firsts, swaps = dict[tuple[str, str], Mistake](), dict[object, Mistake]()
             for each in (x for x in near if x.blamed >= rest):
                 for x in (x for x in each.mistakes if x.claim in each.blamed - rest):
                     firsts.setdefault(x.claim, x)
@@ -200,7 +163,7 @@ class Search:
                 said = list(dict.fromkeys((*firsts.values(), *swaps.values())))[:EITHER]
                 others = tuple(x.finding for x in said if x is not one)
                 # The MAC value that changes most shows it, where one does.
-                without = next(x for x in known if x.blamed in (rest, frozenset()))
+                without = next(x for x in known if x.claims in (rest, frozenset()))
                 before, after = without.point.mac, best.point.mac
                 r = int(np.argmax(np.nan_to_num(after - before)))
                 text = f" (without, MAC {best.data.modes[r]} is {after[r]:.2f} after a fit,"
@@ -224,7 +187,7 @@ def poor_pairs(search: Search, best: Explanation, named: Iterable[Mistake]) -> I
     mistakes, names = tuple(named), search.fits.comparison.data.modes
     search.fit([mistakes], best)
     mac = search.known.get(key_of(mistakes), best).point.mac
-    said = {x for one in mistakes for x in one.subject}
+    said = {x for one in mistakes for x in one.finding.subject.split(", ")}
     poor = [str(names[r]) for r in np.flatnonzero(mac < POOR) if str(names[r]) not in said]
     if poor:
         yield found("poor-pair", enumeration(poor), many=len(poor) > 1, poor=POOR)
@@ -234,23 +197,22 @@ def distant_pairs(search: Search, named: Iterable[Mistake]) -> Iterator[Finding]
     """Yield the pairs without some mistakes that a window mends, if they are clearly better."""
     fits, problem = search.fits, search.fits.comparison.problem
     rule, data = problem.pairing, problem.data
-    state = undone(fits.plain, [one for one in named if one.kind not in FOREIGN])
+    foreign = [one for one in named if one.finding.kind in FOREIGN]
+    state = undone(fits.plain, [one for one in named if one not in foreign])
     modes = fits.of(state, 0 * state.start)
     if rule.method == "order" or modes is None:
         return
-    foreign = {one.subject[0] for one in named if one.kind in FOREIGN}
     # The covariance is of other shapes.
     data = replace(data, frequency=state.frequency, shape=state.shape, shape_covariance=None)
     low, rules = int(state.candidates), (rule, replace(rule, window=WINDOW))
-    f, phi = modes.frequency[:low], state.rows @ modes.phi[-state.rows.shape[1] :, :low]
+    f, phi = modes.frequency[:low], fits.rows(state) @ modes.phi[:, :low]
     pairs, mended = (match(each, data, f, phi) for each in rules)
     every = stacked([state, state]), np.zeros((2, len(state.start)))
     cost, least = fits.at(*every, np.stack([pairs.index, mended.index])).cost
     changed = (pairs.index != mended.index) & (cost > least + CLEAR)
     for r in np.flatnonzero(changed).tolist():
-        q, near, value = int(pairs.index[r]), int(mended.index[r]), pairs.mac[r]
-        if str(data.modes[r]) not in foreign:
-            alike = "" if np.isnan(value) else f" (MAC {value:.2f})"
-            numbers = {"measured": float(np.exp(state.logs[r])), "alike": alike, "model": q + 1}
-            numbers |= {"f": float(f[q]), "near": near + 1, "there": float(f[near])}
-            yield Finding("distant-pair", str(data.modes[r]), numbers)
+        q, near, value = int(pairs.index[r]), int(mended.index[r]), float(pairs.mac[r])
+        if str(data.modes[r]) not in [one.finding.subject for one in foreign]:
+            measured = {"measured": float(np.exp(state.logs[r])), "alike": alike(value)}
+            model = {"model": q + 1, "f": float(f[q]), "near": near + 1, "there": float(f[near])}
+            yield Finding("distant-pair", str(data.modes[r]), {**measured, **model})

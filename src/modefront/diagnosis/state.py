@@ -14,12 +14,10 @@ Assoc. 84, 1989, doi:10.1080/01621459.1989.10478852). C is convex in :math:`\ln 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
 from modefront._typing import Bools, Floats, Ints
-from modefront.models.geometry import Geometry
 
 NU = 100.0  # degrees of freedom of noise
 FREQUENCY, SHAPE = 0.005, 0.03  # its scales where they are not known
@@ -63,15 +61,11 @@ def scaled(
     return of_residuals + total * np.log(sigma) + (log / SPREAD) ** 2 / 2, sigma
 
 
-SHARED = ("unit", "moves", "geometry")  # what no mistake changes in the arrays
-
-
-# 12 fields: all that a mistake may change, in the arrays that explanations are stacked in.
 @dataclass(frozen=True, eq=False)
 class State:
     """Data and model under an explanation, or under each of several, as further axes in front.
 
-    What was not measured, or is left out, is NaN. Units, motion and geometry are those of all.
+    It is what a mistake may change. What was not measured, or is left out, is NaN.
     """
 
     frequency: Floats  # frequency, damping: (..., sets, modes) frequencies in Hz and damping ratios
@@ -80,27 +74,15 @@ class State:
     std: Floats  # (..., sets, modes) relative deviations of frequencies; NaN where not known
     left_out: Floats  # (...) cost of the values that are left out
     candidates: Ints  # (...) number of the lowest model modes among which pairs are sought
-    rows: Floats  # (..., sensors, n) weights of the coordinates of the model's modes at each sensor
+    nodes: Ints  # (..., sensors) node of each sensor; -1 for one that stands still
+    along: Floats  # (..., sensors, 3) direction that each measures
     part: Ints  # (...) number of the part of the model that is scaled, from 1; 0 for none
     start: Floats  # (..., parameters) nominal values; the last is the factor on a part, if any
-    unit: Floats  # (parameters,) units of what is added to them; 0 where factors change them
-    moves: Floats  # (nodes, 3, n) displacement of the nodes with these coordinates
-    geometry: Geometry | None  # of nodes and sensors; None for a model without matrices
-
-    def theta(self, x: Floats) -> Floats:
-        """Return parameters with logarithms x of the factors, or x units more, than nominal."""
-        factors = np.exp(np.where(self.unit == 0, x, 0.0))
-        return self.start * factors + self.unit * x
-
-    def x(self, theta: Floats) -> Floats:
-        """Return x of parameters."""
-        factors = np.where(self.unit == 0, ratio(theta, self.start), 1.0)
-        return np.log(factors) + ratio(theta - self.start, self.unit)
 
     def of(self, chosen: Ints) -> "State":
         """Return some of several states, with what is known of them."""
         new = replace(self)
-        vars(new).update({k: x[chosen] for k, x in vars(self).items() if k not in SHARED})
+        vars(new).update({k: x[chosen] for k, x in vars(self).items()})
         return new
 
     @cached_property
@@ -183,9 +165,7 @@ class State:
 
 def stacked(states: Sequence[State]) -> State:
     """Return several states as one."""
-    names = [each.name for each in fields(State) if each.name not in SHARED]
-    parts: Any = {name: np.stack([getattr(each, name) for each in states]) for name in names}
-    return replace(states[0], **parts)
+    return State(*(np.stack([getattr(x, each.name) for x in states]) for each in fields(State)))
 
 
 def median(values: Floats) -> Floats:

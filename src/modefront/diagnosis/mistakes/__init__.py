@@ -1,1 +1,0 @@
-"""Kinds of mistakes; `modefront.diagnosis.search` names all that are looked for."""
