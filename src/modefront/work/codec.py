@@ -1,11 +1,12 @@
-"""Records as JSON and arrays, and back to the last digit; nothing that is read is executed.
+"""Records as bytes, and back to the last digit; nothing that is read is executed.
 
 Fields hold records, arrays, numbers, texts, None, and tuples, lists and dictionaries of these.
 """
 
+import json
 from collections.abc import Mapping
 from enum import Enum
-from typing import Any, TypeVar
+from typing import IO, Any, TypeVar
 
 import numpy as np
 
@@ -20,6 +21,20 @@ def record(kind: C) -> C:
     """Register a frozen dataclass or an enumeration as one that is kept."""
     _REGISTERED[kind.__name__] = kind
     return kind
+
+
+def dump(value: Any, stream: IO[bytes]) -> None:
+    """Write a value; raises TypeError for an object of a class that is not registered."""
+    arrays: dict[str, Any] = {}
+    head = json.dumps(encode(value, arrays)).encode()
+    np.savez(stream, allow_pickle=False, head=np.frombuffer(head, np.uint8), **arrays)
+
+
+def load(stream: IO[bytes]) -> Any:
+    """Return the value that `dump` has written."""
+    with np.load(stream, allow_pickle=False) as file:
+        arrays = {key: file[key] for key in file.files}
+    return decode(json.loads(arrays.pop("head").tobytes()), arrays)
 
 
 def encode(value: Any, arrays: dict[str, Floats]) -> Any:

@@ -14,7 +14,10 @@ from typing import Any, Generic, TypeVar
 
 import numpy as np
 
+from modefront.work.codec import record
 
+
+@record
 @dataclass
 class Costs:
     """Numbers of solutions, and seconds that they took.
