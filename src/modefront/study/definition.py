@@ -10,7 +10,7 @@ from typing import Annotated
 from modefront.errors import Fault, noted, refuse
 from modefront.findings.record import Finding
 from modefront.front.methods import METHODS
-from modefront.front.options import Pareto, Weighted
+from modefront.front.options import Pareto, ParetoOptions, Weighted
 from modefront.front.point import Kind, label
 from modefront.front.search import Search
 from modefront.identifiability.combinations import Identifiability
@@ -141,6 +141,20 @@ class Study(Shown):
                 out.append(prediction.complete(self.problem))
         refuse(faults)
         return replace(self, predictions=tuple(out))
+
+
+class StudyOptions(ParetoOptions, total=False):
+    """The fields of `Study` and of its `Pareto` as keywords of a function."""
+
+    pareto: Pareto | None
+    weighted: Sequence[Weighted]
+    seed: int
+    search: Search | None
+    identifiability: Identifiability | None
+    uncertainty: Uncertainty | None
+    predictions: Sequence[Prediction]
+    noise: NoisePrior | None
+    slack: float
 
 
 def _hash(*parts: object) -> str:

@@ -365,7 +365,7 @@ def register(extension: T) -> T:
         Where it is none of these, or its name is that of another one.
     """
     for family in FAMILIES:
-        if family.takes(extension):
+        if isinstance(extension, family.member):
             family.add(extension)
             return extension
     expected = ", ".join(family.what for family in FAMILIES)
