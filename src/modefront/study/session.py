@@ -136,13 +136,11 @@ def run(
         return Results(done(), study.problem)
     folder = Path(folder)
     tasks = _tasks(study, folder)
-    with writing(folder):
-        folder.mkdir(parents=True, exist_ok=True)
     for path in (path for path in (tasks.parent, tasks) if path.is_symlink()):
         found = f"a link to {path.readlink()}: remove it, or choose another folder with -o"
         raise wrong(path, "a folder of its own", found, "folder")
-    with writing(tasks.parent):
-        tasks.parent.mkdir(exist_ok=True)
+    with writing(folder):
+        tasks.parent.mkdir(parents=True, exist_ok=True)
     with locked(folder):
         with writing(tasks):
             for path in (tasks, folder / FILE) if fresh or not study.work else ():

@@ -20,7 +20,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from modefront.errors import Fault, InputError, reason, refuse
+from modefront.errors import Fault, InputError, reason, refuse, refusing
 from modefront.inputs import available_memory
 from modefront.outputs import output
 from modefront.text import one_line
@@ -59,23 +59,17 @@ def isolated(
             files = [x for x in path.parent.iterdir() if x.name.startswith(path.stem)]
             seconds = LEAST_SECONDS + sum(x.stat().st_size for x in files if x.is_file()) / SPEED
     seconds, memory = seconds or LEAST_SECONDS, memory or available_memory()
-    try:
+    with refusing(path, expected):
         if _INSIDE:
             return _called(function, path, arguments)
         with tempfile.TemporaryDirectory(prefix="modefront-") as folder:
             answer = Path(folder) / "answer.npz"
             request = [function, [str(path), *arguments], str(answer), memory, str(Path.cwd())]
-            error = _server(os.getpid()).answer(request, seconds, memory)
-            if not error:
-                with answer.open("rb") as stream:
-                    faults, found = load(stream)
-                refuse(faults)
-                return found
-    except InputError:
-        raise
-    except (RuntimeError, ValueError, TypeError, LookupError, OSError, MemoryError) as failed:
-        error = reason(failed)
-    raise InputError(Fault(str(path), "file", expected, error))
+            _server(os.getpid()).answer(request, seconds, memory)
+            with answer.open("rb") as stream:
+                faults, found = load(stream)
+            refuse(faults)
+            return found
 
 
 _INSIDE = False  # whether this is a process that reads a file, so that no other one is needed
@@ -102,10 +96,10 @@ class _Server:
         self._process: subprocess.Popen[str] | None = None
         self._lock = threading.Lock()
 
-    def answer(self, request: Sequence[object], seconds: float, memory: int) -> str:
-        """Return why a file could not be read; nothing where there is an answer.
+    def answer(self, request: Sequence[object], seconds: float, memory: int) -> None:
+        """Have a file read.
 
-        Raises RuntimeError where the process has ended, or has not answered in time.
+        Raises RuntimeError where that fails, the process ends, or it does not answer in time.
         """
         with self._lock:
             process, late = self._started(), time.monotonic() + seconds
@@ -118,7 +112,9 @@ class _Server:
                     process.stdin.write(json.dumps(request) + "\n")
                     process.stdin.flush()
                 if line := process.stdout.readline():
-                    return str(json.loads(line))
+                    if error := json.loads(line):
+                        raise RuntimeError(error)
+                    return
                 status = process.wait()
             finally:
                 timer.cancel()

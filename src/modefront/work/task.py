@@ -162,11 +162,12 @@ def seed_sequence(seed: int, *parts: Part) -> np.random.SeedSequence:
 
 @dataclass(frozen=True)
 class Done:
-    """The result of a task, what it cost, and the seconds that it took."""
+    """The result of a task, or its error, what it cost, and the seconds that it took."""
 
     result: Any
     costs: Costs
     seconds: float
+    error: Exception | None = None
 
 
 def computed(task: Task[Any]) -> Done:
