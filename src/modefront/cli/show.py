@@ -424,7 +424,6 @@ def _cell(value: object) -> str:
 ROWS = 12  # sensors and parameters that are shown, at most, unless all are asked for
 
 
-# Many lines: a table or a sentence for each part of a check.
 def print_findings(study: "Study", findings: "Findings", *, every: bool = False) -> None:
     """Print what a check found, with the ten first findings or ``every`` one."""
     screen, problem, most = Screen(), study.problem, None if every else ROWS
