@@ -14,7 +14,7 @@ LAYERS = (
     ("_lazy", "_typing", "_version", "outputs", "rounding", "text"),
     ("errors",),
     ("complete", "datasets", "families", "inputs"),
-    ("hdf5", "isolated", "options"),
+    ("hdf5", "options"),
     ("linalg", "work"),
     ("data", "fem", "modes", "optim"),
     ("front", "identification", "pairing"),

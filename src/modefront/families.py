@@ -30,16 +30,12 @@ class Family(Mapping[str, T], Generic[T]):
     added: dict[str, T] = field(default_factory=dict)
     _is_loaded: bool = False
 
-    def takes(self, extension: object) -> bool:
-        """Return whether an object is of the class or protocol of the members."""
-        return isinstance(extension, self.member)
-
     def add(self, member: T) -> T:
         """Add a member, in place of one that was added under its name, and return it.
 
         Raises InputError where it is none of the family, or the package has one of its name.
         """
-        if not self.takes(member):
+        if not isinstance(member, self.member):
             raise wrong("register", self.what, clean(repr(member), NAME))
         refuse(self.faults(member))
         name = self.name(member)

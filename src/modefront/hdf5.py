@@ -110,23 +110,21 @@ def _fill(group: h5py.Group, data: Dataset, first: int) -> None:
     group.attrs.update(data.attrs)
 
 
-def contents(path: Path) -> tuple[dict[str, Any], list[Any]]:
-    """Return the values of all variables of a netCDF file in their order, and what belongs to them.
+def contents(path: Path) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return all variables of a netCDF file by name, in their order, and the attributes of all.
 
-    That is the name, dimensions and attributes of each, and those of the file; groups are left out.
-    Raises ValueError where the file refers to others.
+    Variables are dimensions, values and attributes; groups are left out. Raises ValueError where
+    the file refers to others.
     """
-    arrays: dict[str, Any] = {}
-    named: list[Any] = []
+    variables: dict[str, Any] = {}
     with h5py.File(path, "r") as file:
         check_tree(file)
         for name, item in file.items():
             scale = np.bytes_(item.attrs.get("NAME", b""))
             if isinstance(item, h5py.Dataset) and not scale.startswith(WITHOUT_VALUES):
-                dims = [name] if item.is_scale else [each[0].name[1:] for each in item.dims]
-                arrays[str(len(named))] = _values(item)
-                named.append([name, dims, _attributes(item)])
-        return arrays, [named, _attributes(file)]
+                dims = (name,) if item.is_scale else tuple(x[0].name[1:] for x in item.dims)
+                variables[name] = dims, _values(item), _attributes(item)
+        return variables, _attributes(file)
 
 
 def _values(item: h5py.Dataset) -> np.ndarray[Any, Any]:

@@ -501,15 +501,13 @@ class Table:
         return replace(self, place=place, values=value, requested=[])
 
     def entries(
-        self, key: str, each: str, least: str = "", *, required: bool = True
+        self, key: str, each: str, *, required: bool = True
     ) -> "Iterator[tuple[str, Table]]":
-        """Yield the tables within a table by their names; ``each`` says in words what one holds.
-
-        ``least`` is what one of them is called where there has to be one.
-        """
-        table = self.table(key, f"a table of {key.removesuffix('s')}s", ... if required else None)
-        if table and least and not table.values:
-            table.fault("", f"at least one {least}", "none")
+        """Yield the tables within a table by their names; ``each`` says in words what one holds."""
+        what = key.removesuffix("s")
+        table = self.table(key, f"a table of {what}s", ... if required else None)
+        if table and required and not table.values:
+            table.fault("", f"at least one {what}", "none")
         for name in table.values if table else ():
             if table and (entry := table.table(name, each)):
                 yield name, entry

@@ -5,11 +5,11 @@ from __future__ import annotations
 import io
 import re
 from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 import pytest
 import xarray as xr
-from rich.console import Console
 
 import modefront as mf
 from modefront.cli.layout import Screen
@@ -141,8 +141,7 @@ def test_every_terminal_shows_names_and_obeys_none(
 ) -> None:
     written = io.BytesIO()
     stream = io.TextIOWrapper(written, encoding=encoding, newline="\n")
-    console = Console(file=stream, width=80, highlight=False)
-    monkeypatch.setattr(Screen, "of_output", lambda: Screen(console))
+    monkeypatch.setattr("modefront.cli.show.Screen", partial(Screen, file=stream, width=80))
     labels = two["label"].values.astype(object)
     labels[0] = "\x1b]0;owned\x07[bold]\u202eθ"
     hostile = two.assign(label=(("point",), labels.astype(str)))

@@ -16,7 +16,7 @@ from modefront import fem
 from modefront.errors import InputError
 from modefront.fem.mesh import Mesh, read_mesh
 from modefront.fem.structure import Cells
-from modefront.isolated import isolated
+from modefront.work.isolated import isolated
 
 meshio = pytest.importorskip("meshio")
 
@@ -178,7 +178,7 @@ def test_files_that_would_be_read_without_an_end(
             stream.truncate(size)
         with pytest.raises(InputError, match=says):
             read_mesh(tmp_path / "b.ply")
-    monkeypatch.setattr("modefront.isolated.LEAST_SECONDS", 3.0)
+    monkeypatch.setattr("modefront.work.isolated.LEAST_SECONDS", 3.0)
     (tmp_path / "c.ply").write_text("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n")
     with pytest.raises(InputError, match="expected a mesh that meshio can read, found "):
         read_mesh(tmp_path / "c.ply")
@@ -207,7 +207,7 @@ def read(path):
 def test_a_reader_without_memory_says_so_whatever_it_makes_of_it(tmp_path: Path) -> None:
     (tmp_path / "reader.py").write_text(READER)
     call = "isolated('reader:read', Path('a.txt'), 'a text', 60.0, 10**9)"
-    code = f"from pathlib import Path; from modefront.isolated import isolated; {call}"
+    code = f"from pathlib import Path; from modefront.work.isolated import isolated; {call}"
     path = os.pathsep.join([str(tmp_path), *sys.path])
     done = subprocess.run(
         [sys.executable, "-c", code],

@@ -18,8 +18,8 @@ import scipy.io
 import scipy.sparse
 
 import modefront as mf
-from modefront.isolated import isolated
 from modefront.models.files import read_matrix
+from modefront.work.isolated import isolated
 
 K = np.array([[4.0, -1.0, 0.0], [-1.0, 3.0, 0.5], [0.0, 0.5, 2.0]])
 SPARSE = scipy.sparse.csc_array(K)
@@ -208,7 +208,7 @@ def hostile() -> dict[str, tuple[str, bytes]]:
 
 
 def refused(path: Path, content: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("modefront.isolated.available_memory", lambda: 2 * 10**9)
+    monkeypatch.setattr("modefront.work.isolated.available_memory", lambda: 2 * 10**9)
     path.write_bytes(content)
     with pytest.raises(mf.InputError) as error:
         read_matrix(path)
@@ -281,7 +281,7 @@ def test_a_matrix_that_does_not_fit_into_the_memory(
             stream, {"descr": "<f8", "fortran_order": False, "shape": (30_000, 30_000)}
         )
         stream.truncate(stream.tell() + 8 * 30_000**2)  # a file with holes, of 7 GB
-    monkeypatch.setattr("modefront.isolated.available_memory", lambda: 2 * 10**9)
+    monkeypatch.setattr("modefront.work.isolated.available_memory", lambda: 2 * 10**9)
     with pytest.raises(mf.InputError, match="more than 2 GB to be read"):
         read_matrix(path)
 

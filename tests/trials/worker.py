@@ -8,12 +8,14 @@ import json
 import sys
 import warnings
 from collections.abc import Sequence
+from copy import deepcopy
 from pathlib import Path
+from typing import Any
 
 from modefront.cli.main import main
 from modefront.errors import InputError
-from modefront.isolated import Read, isolated, limit
 from modefront.results import files
+from modefront.work.isolated import isolated, limit
 
 MEMORY = 6 * 10**9
 
@@ -27,7 +29,7 @@ class Once:
 
     def __init__(self) -> None:
         self.file: tuple[object, ...] = ()
-        self.answer: Read | InputError = InputError([])
+        self.answer: Any = InputError([])
 
     def __call__(
         self,
@@ -37,7 +39,7 @@ class Once:
         seconds: float | None = None,
         memory: int | None = None,
         arguments: Sequence[str] = (),
-    ) -> Read:
+    ) -> Any:
         """Return what the file holds, as `isolated` does."""
         found = path.stat()
         file = (str(path), found.st_ino, found.st_size, found.st_mtime_ns)
@@ -49,10 +51,7 @@ class Once:
             self.file = file
         if isinstance(self.answer, InputError):
             raise self.answer
-        arrays, texts = self.answer
-        return {name: values.copy() for name, values in arrays.items()}, json.loads(
-            json.dumps(texts)
-        )
+        return deepcopy(self.answer)
 
 
 def command(arguments: list[str]) -> tuple[int, str, str]:

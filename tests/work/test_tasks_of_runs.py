@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import pickle
 from collections.abc import Sequence
 from pathlib import Path
@@ -14,7 +15,7 @@ from refusals import edited
 from two_masses import FRF, PASSAGE, write_study
 
 import modefront as mf
-from modefront.work.codec import encode
+from modefront.work.codec import dump
 from modefront.work.store import Run, Store
 from modefront.work.task import Costs, R, Task
 
@@ -69,9 +70,8 @@ def kept(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     write = Store.write
 
     def note(store: Store, task: Task[Any], result: Any, costs: Costs, seconds: float) -> None:
-        arrays: dict[str, Any] = {}
-        content = repr(encode(result, arrays))
-        records[task.name] = content, [x.tobytes() for x in arrays.values()], costs.eigenproblems
+        dump(result, stream := io.BytesIO())
+        records[task.name] = stream.getvalue(), costs.eigenproblems
         write(store, task, result, costs, seconds)
 
     monkeypatch.setattr(Store, "write", note)

@@ -31,7 +31,7 @@ def run_identify(
     writable(output)
     chosen = {key: by_hand[key] or () for key in ("keep", "drop", "seeds")}
     test = identify(path, band, **chosen)
-    screen = Screen.of_output()
+    screen = Screen()
     found = bool(test.modes.data.modes)
     written = test.write(output) if found else []
     if figures is not None:

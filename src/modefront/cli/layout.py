@@ -2,8 +2,8 @@
 
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from itertools import zip_longest
+from typing import Any
 
 import numpy as np
 from rich.cells import cell_len, chop_cells
@@ -40,34 +40,24 @@ def plural(count: int, noun: str) -> str:
     return f"{count} {noun}{'s' * (count != 1)}"
 
 
-class _Output(Console):
-    """A console that lets its caller know that nobody reads any more; rich leaves the program."""
-
-    def on_broken_pipe(self) -> None:
-        """Raise BrokenPipeError."""
-        raise BrokenPipeError
-
-
-@dataclass(frozen=True)
-class Screen:
+class Screen(Console):
     """A terminal, or a file of the width that ``COLUMNS`` says, 80 unless given."""
 
-    console: Console
+    def __init__(self, **given: Any) -> None:
+        super().__init__(highlight=False, **given)
 
-    @classmethod
-    def of_output(cls) -> "Screen":
-        """Return the screen of standard output."""
-        return cls(_Output(highlight=False))
+    def on_broken_pipe(self) -> None:
+        """Raise BrokenPipeError: its caller is to know that nobody reads any more."""
+        raise BrokenPipeError
 
     @property
-    def width(self) -> int:
+    def room(self) -> int:
         """Characters a line."""
-        return max(self.console.width, 20)
+        return max(self.width, 20)
 
     def shown(self, text: object) -> str:
         """Return a text as the terminal can show it."""
-        encoding = self.console.encoding
-        return clean(text).encode(encoding, errors=SPELL).decode(encoding)
+        return clean(text).encode(self.encoding, errors=SPELL).decode(self.encoding)
 
     def say(self, text: object, start: str = "", style: str = "") -> None:
         """Print a sentence, wrapped at words; further lines are indented as far as its start."""
@@ -76,7 +66,7 @@ class Screen:
     def sentence(self, text: object, start: str = "", style: str = "") -> list[Line]:
         """Return the lines of a sentence."""
         start = self.shown(start)
-        room = max(self.width - cell_len(start), LEAST)
+        room = max(self.room - cell_len(start), LEAST)
         # Long words, such as paths and commands, are left whole, to be copied.
         lines = _wrapped(self.shown(text), room, whole=True)
         indent = " " * cell_len(start)
@@ -98,9 +88,9 @@ class Screen:
         widths = [max([1, *map(cell_len, PART.findall(title))]) for title in titles]
         for row in (row for row in cells if len(row) > 1):
             widths = [max(width, cell_len(x)) for width, x in zip(widths, row, strict=True)]
-        most = max(int(KEY * self.width) // keys, LEAST)
+        most = max(int(KEY * self.room) // keys, LEAST)
         widths[:keys] = [min(width, most) for width in widths[:keys]]
-        room = self.width - sum(widths[:keys]) - GAP * keys
+        room = self.room - sum(widths[:keys]) - GAP * keys
         widths[keys:] = [min(width, room) for width in widths[keys:]]
         blocks: list[list[int]] = [[]]
         for j in range(keys, len(titles)):
@@ -118,7 +108,7 @@ class Screen:
             out.append((_joined(["─" * width for width in of], of, keys), "dim"))
             for row in cells:
                 if len(row) == 1:
-                    out += [(line, "italic") for line in _broken(row[0], self.width)]
+                    out += [(line, "italic") for line in _broken(row[0], self.room)]
                     continue
                 parts = [_broken(row[j], widths[j]) for j in chosen]
                 out += [(_joined(x, of, keys), "") for x in zip_longest(*parts, fillvalue="")]
@@ -128,7 +118,7 @@ class Screen:
         """Print lines."""
         for text, style in lines:
             # Rich wraps lines that have no spans of its own accord.
-            self.console.print(Text(self.shown(text.rstrip()), style=style), soft_wrap=True)
+            self.print(Text(self.shown(text.rstrip()), style=style), soft_wrap=True)
 
 
 def _joined(cells: Sequence[str], widths: Sequence[int], keys: int) -> str:

@@ -24,9 +24,9 @@ PATH = click.Path(path_type=Path)
 
 _output = partial(click.option, "-o", "--output", type=PATH)
 
-FORMAT = click.option(
-    "--format", "form", type=click.Choice(["table", "json"]), default="table", show_default=True
-)
+FORMAT = click.option("--format", "form", type=click.Choice(["table", "json"]), default="table")
+
+SETTINGS = {"help_option_names": ["-h", "--help"], "show_default": True}
 
 OK, UNDONE, WRONG_INPUT, INTERRUPTED = 0, 1, 2, 130
 """Exit statuses; 130 is that of shells for an interrupt."""
@@ -72,7 +72,7 @@ def _full_lists(command: Callable[..., None]) -> Callable[..., None]:
     return command
 
 
-@click.group(invoke_without_command=True, context_settings={"help_option_names": ["-h", "--help"]})
+@click.group(invoke_without_command=True, context_settings=SETTINGS)
 @click.version_option(__version__, prog_name="modefront")
 @click.pass_context
 def cli(context: click.Context) -> None:
@@ -86,7 +86,6 @@ def cli(context: click.Context) -> None:
 @click.option(
     "--example",
     default="three-story",
-    show_default=True,
     help="One of ambient-test, calculix, eighteen-stories, footbridge, hammer-test, three-groups, "
     "three-story, three-story-c0, -c1, -fe-c0, -fe-c1 and wrong-class.",
 )
@@ -115,8 +114,7 @@ def schema() -> None:
 @click.option("--all", "every", is_flag=True, help="All findings, not only the ten first.")
 def check(study: Path, every: bool) -> None:
     """Say all that is wrong with STUDY, and prove its derivatives."""
-    from modefront.cli.check import print_findings
-    from modefront.cli.show import say_estimate
+    from modefront.cli.show import print_findings, say_estimate
     from modefront.study.check import check as check_study
     from modefront.study.estimate import estimate
     from modefront.study.file import load
@@ -146,7 +144,6 @@ def check(study: Path, every: bool) -> None:
     "--workers",
     type=click.IntRange(1, 61),
     default=1,
-    show_default=True,
     metavar="N",
     help="Processes that do the work; the digits do not depend on them.",
 )
@@ -213,7 +210,6 @@ def run(
     "picture",
     type=click.Choice(["svg", "png", "pdf"]),
     default="svg",
-    show_default=True,
     help="Format of the pictures.",
 )
 @_full_lists

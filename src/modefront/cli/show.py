@@ -1,27 +1,31 @@
-"""Results and comparisons in the terminal, an overview or full lists, and as JSON."""
+"""Findings, results and comparisons in the terminal, an overview or full lists, and as JSON."""
 
 from collections.abc import Callable, Mapping, Sequence
 from itertools import chain, groupby
 from operator import attrgetter
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from rich.console import Console
 
 from modefront._typing import Floats
 from modefront.cli.layout import BLANK, Line, Screen, number, plural
 from modefront.cli.terminal import command, say_next
 from modefront.datasets import Dataset
-from modefront.findings.record import Severity, meaning_of
+from modefront.findings.knowledge import enumeration
+from modefront.findings.record import Severity, found, meaning_of
 from modefront.front.point import INTERNAL, Kind, position, preferred
 from modefront.predictions import ResultVariable
 from modefront.predictions.base import Quantity, predictions_in, quantity
 from modefront.results.compare import Comparison, Spread, short_names
-from modefront.results.remarks import digest, findings_of, verdict
+from modefront.results.remarks import MOST, digest, findings_of, verdict
 from modefront.study.estimate import Estimate
 from modefront.text import json_of
 from modefront.work.task import Costs
+
+if TYPE_CHECKING:  # `show` is quick without them
+    from modefront.study.check import Findings
+    from modefront.study.definition import Study
 
 FEWEST = 2  # rows of a kind that a table keeps, however long it is
 
@@ -298,7 +302,7 @@ def say_estimate(expected: Estimate | None, *, err: bool = False) -> None:
     """Print how long a run will probably take, and what would make it shorter."""
     if expected is None:
         return
-    screen = Screen(Console(highlight=False, stderr=err))
+    screen = Screen(stderr=err)
     screen.say(expected.text)
     if expected.advice:
         screen.say(f"shorter with: {'; '.join(expected.advice)}")
@@ -306,7 +310,7 @@ def say_estimate(expected: Estimate | None, *, err: bool = False) -> None:
 
 def print_summary(data: Dataset, study: Path, folder: Path, costs: Costs) -> None:
     """Print what a run has found and what this run of it has cost, in a few lines."""
-    screen = Screen.of_output()
+    screen = Screen()
     screen.say(f"{data.attrs.get('study', '')}: results in {folder}", style="bold")
     failures = [str(x) for x in findings_of(data) if x.severity is Severity.FAILURE]
     said = verdict(data)
@@ -330,7 +334,7 @@ def print_results(
     data: Dataset, lists: Sequence[str] = (), folder: Path | str = "DIRECTORY"
 ) -> None:
     """Print the first screen of the results in a folder, or the full lists of these names."""
-    screen, attrs, show = Screen.of_output(), data.attrs, command("show", folder)
+    screen, attrs, show = Screen(), data.attrs, command("show", folder)
     lines = screen.sentence(attrs.get("study") or "results", style="bold")
     if lists:
         by = f"modefront {attrs['version']}, method {attrs['method']}, seed {attrs['seed']}"
@@ -374,7 +378,7 @@ SHOWN = 6  # parameters, and predictions, that are printed unless all are asked 
 
 def print_comparison(comparison: Comparison, *, every: bool = False) -> None:
     """Print a comparison, one column a study, with the first parameters, or ``every`` one."""
-    screen = Screen.of_output()
+    screen = Screen()
     fronts, folders = comparison.fronts, [summary.name for summary in comparison.fronts]
     short, most = short_names(folders), None if every else SHOWN
     names, columns = dict(zip(folders, short, strict=True)), ["", *short]
@@ -416,3 +420,68 @@ def _cell(value: object) -> str:
         ends = f"{_cell(value.least)} to {_cell(value.greatest)}"
         return f"{_cell(value.reference)} ({ends})"
     return number(value, ".4g", "") if isinstance(value, float) else str(value)
+
+
+ROWS = 12  # sensors and parameters that are shown, at most, unless all are asked for
+
+
+def print_findings(study: "Study", findings: "Findings", *, every: bool = False) -> None:
+    """Print what a check found, with the ten first findings or ``every`` one."""
+    screen, problem, most = Screen(), study.problem, None if every else ROWS
+    screen.say(f"{study.file}: {study.name}")
+    sizes = {
+        "parameter": len(study.parameters),
+        "measured mode": len(problem.data.modes),
+        "sensor": len(problem.data.sensors),
+        "data set": len(problem.data.sets),
+    }
+    counts = ", ".join(plural(count, noun) for noun, count in sizes.items())
+    silent = np.isnan(problem.data.shape).all(axis=(0, 1))
+    if silent.any() and not silent.all():  # else no shapes are measured
+        counts += f"; {plural(int(silent.sum()), 'sensor')} without data"
+    screen.say(f"{problem.model.size} degrees of freedom, {counts}", start="  ")
+    rows, beside = [], findings.beside
+    pairs, measured = beside.pairs, beside.data.mean_frequency
+    for r, (mode, q, mac) in enumerate(zip(beside.data.modes, pairs.index, pairs.mac, strict=True)):
+        f = float(beside.frequency[q])
+        error = 100 * (f / measured[r] - 1)
+        cells = [number(measured[r], ".4g", ""), f"{f:.4g}"]
+        cells.append(number(error, "+.1f" if abs(error) < 1e4 else "+.1e", ""))
+        rows.append([str(mode), *cells, number(mac, ".4f", ""), str(q + 1)])
+    columns = ["mode", "measured Hz", "model Hz", "error %", "MAC", "model mode"]
+    screen.table("nominal model beside the measured modes", columns, rows)
+    if (np.isfinite(problem.data.shape).sum(axis=2) > 1).any():
+        comac, sensors = beside.comac, problem.data.sensors
+        order = np.argsort(np.where(np.isnan(comac), 2.0, comac), kind="stable").tolist()
+        worst = [f"{sensors[s]} {number(comac[s], '.4f', 'unknown')}" for s in order[:most]]
+        rest = [f"{len(order[most:])} more with --all"] * (most is not None and len(order) > most)
+        screen.say("")
+        screen.say(f"COMAC by sensor, the least first: {', '.join([*worst, *rest])}")
+    of = findings.sensitivities
+    columns = ["parameter", *(f"f{mode}" for mode in of.modes), "shapes"]
+    shares = np.column_stack([of.frequency, of.shape]).round(3)
+    rows = [
+        [name, *(number(x + 0.0, ".3f" if abs(x) < 10 else ".2g", "") for x in row)]
+        for name, row in zip(of.parameters, shares, strict=True)
+    ]
+    more = f"; {len(rows) - ROWS} more with --all" * (most is not None and len(rows) > ROWS)
+    screen.table(f"sensitivity, % for 1 % of a parameter{more}", columns, rows[:most])
+    values = zip(problem.properties, problem.evaluate(problem.start).J, strict=True)
+    rows = [
+        [name, f"{a:g}", f"{J:.5g}", f"{np.sqrt(J / a):.4g}"]
+        for name, (a, J) in zip(problem.objectives, values, strict=True)
+    ]
+    screen.table("groups", ["group", "a", "J nominal", "error nominal"], rows)
+    screen.say("")
+    screen.say(findings.derivatives)
+    sentences = [f"warning: {text}" for text in findings.warnings]
+    if findings.spoilt:
+        sentences.append(str(found("first-this")))
+    else:
+        names, known = of.superfluous, findings.determined
+        fixed = [found("superfluous", enumeration(names), many=len(names) > 1)] if names else []
+        sentences += map(str, (*fixed, *known[-1:], *known[:-1]))
+    for line in digest(sentences, f"modefront check --all {study.file}", None if every else MOST):
+        screen.say(line)
+    if not findings.warnings:
+        screen.say("no warnings")

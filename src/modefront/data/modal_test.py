@@ -7,6 +7,7 @@ file alone is a test of one set; a data set of an ambient test is a setup.
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -18,8 +19,8 @@ from modefront.data.responses import EXPECTED, FRF, ORDERS, TIME, Channel, DataS
 from modefront.data.uff import is_universal, read_functions, read_uff
 from modefront.errors import Fault, InputError, noted, refuse, suggestion
 from modefront.inputs import MOST_DATA, file_size, wrong
-from modefront.isolated import Read, isolated
 from modefront.rounding import LARGEST
+from modefront.work.isolated import isolated
 
 RECORDED = {"displacement": 0, "velocity": 1, "acceleration": 2}  # number of differentiations
 WHAT = "a file with records in time"
@@ -157,10 +158,10 @@ def _of_file(path: Path, setup: SetFiles) -> tuple[Sequence[str], Floats, float]
     return [name for name, _ in named], values, _rate(path, functions[0].frequency)
 
 
-def read_arrays(path: Path) -> Read:
+def read_arrays(path: Path) -> dict[str, Any]:
     """Return the numbers of a file of NumPy or MATLAB by name, in a process with limits."""
     if path.suffix.lower() == ".npy":
-        return {"array": np.load(path, allow_pickle=False)}, None
+        return {"array": np.load(path, allow_pickle=False)}
     import h5py  # takes time
     from scipy.io import loadmat
 
@@ -169,7 +170,7 @@ def read_arrays(path: Path) -> Read:
     shapes = hdf5.variables(path) if h5py.is_hdf5(path) else {}  # of MATLAB 7.3
     read = {name: hdf5.variable(path, name) for name, shape in shapes.items() if shape}
     arrays = {k: x for k, x in (read or loadmat(path)).items() if isinstance(x, np.ndarray)}
-    return {name: x for name, x in arrays.items() if x.dtype.kind in "fiuc"}, None
+    return {name: x for name, x in arrays.items() if x.dtype.kind in "fiuc"}
 
 
 def _of_array(path: Path, setup: SetFiles) -> tuple[Sequence[str], Floats, float]:
@@ -177,7 +178,7 @@ def _of_array(path: Path, setup: SetFiles) -> tuple[Sequence[str], Floats, float
     if setup.rate is None or not setup.sensors:
         expected = "'rate' and 'sensors' in its [[set]], which the file does not say"
         raise wrong(path, expected, "nothing", "records")
-    read, _ = isolated(f"{__name__}:read_arrays", path, "an array of numbers")
+    read = isolated(f"{__name__}:read_arrays", path, "an array of numbers")
     arrays, count = list(read.values()), len(setup.sensors)
     real = [x for x in arrays if x.size and x.dtype.kind in "fiu"]
     tables = [x for x in real if x.ndim == 2 and count in x.shape]

@@ -28,8 +28,8 @@ from modefront.errors import suggestion
 from modefront.fem.structure import Cells
 from modefront.hdf5 import check_tree
 from modefront.inputs import MOST_DATA, available_memory, file_size, wrong
-from modefront.isolated import isolated
 from modefront.text import one_line
+from modefront.work.isolated import isolated
 
 Kind = Literal["beam", "truss", "shell", "solid"]
 CELL_TYPES: Mapping[Kind, tuple[str, ...]] = {
@@ -123,14 +123,12 @@ def read_mesh(path: str | Path) -> Mesh:
     if importlib.util.find_spec("meshio") is None:
         raise wrong(path, "meshio for meshes (`pip install modefront[mesh]`)", "no such package")
     memory = min(available_memory(), MEMORY + PER_BYTE * file_size(path, "a mesh", MOST_DATA))
-    arrays, parts = isolated(f"{__name__}:read_with_meshio", path, READABLE, memory=memory)
-    points = arrays.pop("points")
+    reader = f"{__name__}:read_with_meshio"
+    points, blocks, sets = isolated(reader, path, READABLE, memory=memory)
     if points.ndim != 2 or not 1 <= points.shape[1] <= 3:
         raise wrong(path, "nodes in up to 3 dimensions", str(points.shape))
-    named = enumerate(parts["blocks"])
-    blocks = [Cells(name, kind, arrays[f"cells {k}"]) for k, (name, kind) in named]
-    sets = {name: arrays[f"set {k}"] for k, name in enumerate(parts["sets"])}
-    return Mesh(np.pad(points, ((0, 0), (0, 3 - points.shape[1]))), tuple(blocks), sets)
+    cells = tuple(Cells(*block) for block in blocks)
+    return Mesh(np.pad(points, ((0, 0), (0, 3 - points.shape[1]))), cells, sets)
 
 
 def refers_to(path: Path) -> str:
@@ -149,8 +147,8 @@ def refers_to(path: Path) -> str:
     return ""
 
 
-def read_with_meshio(path: Path) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return nodes, cells and sets as arrays, and their names; see `modefront.isolated`."""
+def read_with_meshio(path: Path) -> tuple[Any, ...]:
+    """Return nodes, cells with their groups and types, and sets; see `modefront.work.isolated`."""
     from unittest import mock
 
     import meshio
@@ -181,11 +179,8 @@ def read_with_meshio(path: Path) -> tuple[dict[str, Any], dict[str, Any]]:
     blocks: dict[tuple[str, str], list[Ints]] = {}
     for name, kind, cells in _named_cells(raw):
         blocks.setdefault((str(name), kind), []).append(cells)
-    sets = _node_sets(raw)
-    arrays = {f"cells {k}": np.concatenate(cells) for k, cells in enumerate(blocks.values())}
-    arrays |= {f"set {k}": nodes for k, nodes in enumerate(sets.values())}
-    arrays["points"] = np.asarray(raw.points, dtype=float)
-    return arrays, {"blocks": list(blocks), "sets": list(sets)}
+    named = [(*block, np.concatenate(cells)) for block, cells in blocks.items()]
+    return np.asarray(raw.points, dtype=float), named, _node_sets(raw)
 
 
 def _from_file(file: Any, dtype: Any = float, count: int = -1, *others: Any, **named: Any) -> Any:

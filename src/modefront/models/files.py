@@ -1,7 +1,7 @@
 """Matrices from files of any format: real, symmetric and without entries that overflow.
 
 The readers of other packages do not believe what a file announces, or end with it: they have a
-process of their own, with limits on time and memory (`modefront.isolated`).
+process of their own, with limits on time and memory (`modefront.work.isolated`).
 """
 
 from collections.abc import Callable, Mapping
@@ -13,8 +13,8 @@ import scipy
 
 from modefront import inputs
 from modefront.errors import suggestion
-from modefront.isolated import Read, isolated
 from modefront.models.matrices import symmetrised
+from modefront.work.isolated import isolated
 
 
 def read_entries(
@@ -33,9 +33,9 @@ def read_entries(
         raise inputs.wrong(path, expected, f"'{path.name}'")
     inputs.file_size(path, "a matrix")
     arguments = (form, name or "", "square" if square else "")
-    arrays, shape = isolated(f"{__name__}:entries", path, "a readable matrix", arguments=arguments)
-    places = arrays["row"], arrays["column"]
-    return scipy.sparse.coo_array((arrays["data"], places), shape=tuple(shape))
+    reader, expected = f"{__name__}:entries", "a readable matrix"
+    parts, shape = isolated(reader, path, expected, arguments=arguments)
+    return scipy.sparse.coo_array(parts, shape=shape)
 
 
 def read_matrix(path: Path | str, name: str | None = None) -> scipy.sparse.coo_array:
@@ -65,8 +65,8 @@ def read_matrix(path: Path | str, name: str | None = None) -> scipy.sparse.coo_a
 # In the process that reads files
 
 
-def entries(path: Path, form: str, name: str, square: str) -> Read:
-    """Return row, column and data of the entries of a matrix, and its numbers of rows and columns.
+def entries(path: Path, form: str, name: str, square: str) -> tuple[Any, tuple[int, ...]]:
+    """Return data and places of the entries of a matrix, and its numbers of rows and columns.
 
     ``form`` is the ending of its format, and ``name`` that of a matrix in the file, empty for the
     only one; a ``square`` one is expected unless that is empty. Raises InputError for others.
@@ -85,7 +85,7 @@ def entries(path: Path, form: str, name: str, square: str) -> Read:
         expected = f"a matrix that fits into the {free / 1e9:.3g} GB of memory that are free"
         found = f"{A.nnz} entries in {A.shape[0]} rows, which take {need / 1e9:.3g} GB"
         raise inputs.wrong(path, expected, found)
-    return {"row": A.row, "column": A.col, "data": A.data.astype(float)}, list(A.shape)
+    return (A.data.astype(float), (A.row, A.col)), A.shape
 
 
 def _check_shape(path: Path, shape: tuple[int, ...], square: str = "square") -> None:

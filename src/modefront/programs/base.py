@@ -21,11 +21,12 @@ from modefront.data.csv import NUMBER
 from modefront.errors import reason
 from modefront.fem.structure import FACES
 from modefront.inputs import ended, file_size, first_repeated, wrong
-from modefront.isolated import Read, isolated
 from modefront.models.dofs import DofTable, read_dofs
 from modefront.models.matrices import symmetrised
 from modefront.outputs import output
 from modefront.text import Shown
+from modefront.work.codec import record
+from modefront.work.isolated import isolated
 
 CORNERS: Mapping[str, int] = {  # nodes of cells by types of meshio and VTK; others are left out
     **{"vertex": 1, "line": 2},
@@ -36,6 +37,7 @@ Matrix: TypeAlias = scipy.sparse.csr_array
 Quantity = Literal["stiffness", "mass"]
 
 
+@record
 @dataclass(frozen=True, eq=False, repr=False)
 class ProgramMesh(Shown):
     """Nodes by their numbers, and cells between them."""
@@ -68,28 +70,11 @@ def refuse_unknown_nodes(path: Path, known: Collection[int], nodes: Iterable[int
         raise wrong(path, "all nodes of its elements", f"no node {missing}", "nodes")
 
 
-def arrays_of(mesh: ProgramMesh) -> dict[str, Any]:
-    """Return the arrays of a mesh by their names."""
-    cells = {f"cells_{kind}": table for kind, table in mesh.cells.items()}
-    return {"number": mesh.number, "coordinates": mesh.coordinates, **cells}
-
-
-def mesh_from(arrays: Mapping[str, Any]) -> ProgramMesh:
-    """Return the mesh of its arrays; raises ValueError where they do not belong together."""
-    cells = {name.removeprefix("cells_"): table for name, table in arrays.items()}
-    number, coordinates = cells.pop("number"), cells.pop("coordinates")
-    if coordinates.shape != (number.size, 3) or not all(
-        table.shape[1:] == (CORNERS[kind],) and np.isin(table, number).all()
-        for kind, table in cells.items()
-    ):
-        raise ValueError("arrays that do not belong together")
-    return ProgramMesh(number.astype(np.intp), coordinates.astype(float), cells)
-
-
 def write_mesh(path: Path, mesh: ProgramMesh) -> None:
     """Write a mesh as arrays of NumPy."""
+    cells: dict[str, Any] = {f"cells_{kind}": table for kind, table in mesh.cells.items()}
     with output(path) as stream:
-        np.savez(stream, **arrays_of(mesh))
+        np.savez(stream, number=mesh.number, coordinates=mesh.coordinates, **cells)
 
 
 def read_mesh(path: Path) -> ProgramMesh:
@@ -97,7 +82,14 @@ def read_mesh(path: Path) -> ProgramMesh:
     file_size(path, "nodes and elements (mesh.npz)")
     try:
         with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
-            return mesh_from({name: file[name] for name in file.files})
+            cells = {name.removeprefix("cells_"): file[name] for name in file.files}
+        number, coordinates = cells.pop("number"), cells.pop("coordinates")
+        if coordinates.shape != (number.size, 3) or not all(
+            table.shape[1:] == (CORNERS[kind],) and np.isin(table, number).all()
+            for kind, table in cells.items()
+        ):
+            raise ValueError("arrays that do not belong together")
+        return ProgramMesh(number.astype(np.intp), coordinates.astype(float), cells)
     except Exception as error:  # what NumPy raises for a damaged file is not documented
         raise wrong(path, "nodes and elements (mesh.npz)", reason(error)) from None
 
@@ -135,12 +127,12 @@ def read_job(program: str, path: Path, options: JobOptions) -> Job:
     """Return a job of a program; raises InputError where its files cannot be read."""
     given = (program, *(str(text or "") for text in astuple(options)))
     reader, expected = f"{__name__}:parts_of_job", f"a job of {program}"
-    arrays, texts = isolated(reader, path, expected, arguments=given)
-    dofs = DofTable(*(arrays.pop(part) for part in ("node", "direction", "weight")))
-    shape, parts = (dofs.size, dofs.size), range(3)
-    K, M = (Matrix(tuple(arrays.pop(f"{A}{k}") for k in parts), shape=shape) for A in "KM")
-    name, precision, notes = texts
-    return Job(name, K, M, dofs, precision, mesh_from(arrays) if arrays else None, tuple(notes))
+    name, *matrices, table, mesh, precision, notes = isolated(
+        reader, path, expected, arguments=given
+    )
+    dofs = DofTable(*table)
+    K, M = (Matrix(parts, shape=(dofs.size, dofs.size)) for parts in matrices)
+    return Job(name, K, M, dofs, precision, mesh, notes)
 
 
 @dataclass(frozen=True, eq=False)
@@ -176,7 +168,7 @@ def given_table(options: JobOptions, size: int) -> DofTable:
     return table
 
 
-def parts_of_job(path: Path, program: str, *given: str) -> Read:
+def parts_of_job(path: Path, program: str, *given: str) -> tuple[Any, ...]:
     """Return the parts of a job of a program once it is checked; options are given as texts."""
     stiffness, mass, *files = (text or None for text in given)
     options = JobOptions(stiffness, mass, *(Path(file) if file else None for file in files))
@@ -195,11 +187,9 @@ def parts_of_job(path: Path, program: str, *given: str) -> Read:
         K, M = K[free][:, free].tocsr(), M[free][:, free].tocsr()
     if not (table.node > 0).any():
         notes.append("sensors can be given by degrees of freedom only, unless --dofs names nodes")
-    arrays = {} if listed.mesh is None else arrays_of(listed.mesh)
-    arrays |= {name: getattr(table, name)[free] for name in ("node", "direction", "weight")}
-    for letter, A in (("K", K), ("M", M)):
-        arrays |= {f"{letter}{k}": x for k, x in enumerate((A.data, A.indices, A.indptr))}
-    return arrays, [str(listed.files[0]), listed.precision, notes]
+    matrices = ((A.data, A.indices, A.indptr) for A in (K, M))
+    dofs = tuple(x[free] for x in (table.node, table.direction, table.weight))
+    return str(listed.files[0]), *matrices, dofs, listed.mesh, listed.precision, tuple(notes)
 
 
 def whole(path: Path, listed: scipy.sparse.coo_array, dofs: DofTable) -> Matrix:

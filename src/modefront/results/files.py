@@ -18,10 +18,10 @@ from modefront.datasets import Array, ArrayDataset, Dataset
 from modefront.errors import Fault, InputError, refuse, refusing
 from modefront.hdf5 import write_netcdf
 from modefront.inputs import file_size
-from modefront.isolated import isolated
 from modefront.outputs import output
 from modefront.results.schema import ATTRIBUTES, FORMAT, VARIABLES
 from modefront.text import NAME, clean
+from modefront.work.isolated import isolated
 
 FILE = "results.nc"
 
@@ -120,9 +120,5 @@ def _text(*parts: object) -> bytes:
 
 def _read(path: Path) -> ArrayDataset:
     """Return the contents of a netCDF file, which a process that damaged files may end reads."""
-    arrays, (variables, attributes) = isolated(READER, path, EXPECTED, SECONDS)
-    values = {
-        name: Array(tuple(dimensions), arrays[str(k)], own)
-        for k, (name, dimensions, own) in enumerate(variables)
-    }
-    return ArrayDataset(values, attributes)
+    variables, attributes = isolated(READER, path, EXPECTED, SECONDS)
+    return ArrayDataset({name: Array(*x) for name, x in variables.items()}, attributes)

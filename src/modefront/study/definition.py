@@ -10,7 +10,7 @@ from typing import Annotated
 from modefront.errors import Fault, noted, refuse
 from modefront.findings.record import Finding
 from modefront.front.methods import METHODS
-from modefront.front.options import Pareto, Weighted
+from modefront.front.options import Pareto, ParetoOptions, Weighted
 from modefront.front.point import Kind, label
 from modefront.front.search import Search
 from modefront.identifiability.combinations import Identifiability
@@ -42,7 +42,8 @@ class Origin:
 class Study(Shown):
     """A problem with the options of its solution.
 
-    Raises InputError with all options that contradict the problem or one another.
+    Raises InputError with all options that contradict the problem or one another, and with what its
+    nominal model cannot predict.
 
     Attributes
     ----------
@@ -54,7 +55,7 @@ class Study(Shown):
     search : extent of the search for global minima
     identifiability : limits of flat parts and of manifolds of equivalent models
     uncertainty : source of the errors of the data, and samples
-    predictions : predictions of all models
+    predictions : predictions of all models, with defaults that follow from the nominal model
     noise : what is expected of the errors of the data and the model
     slack : share by which objectives of models may be greater that count in ranges of predictions
     origin : where the study was read; None for one that was made in Python
@@ -76,8 +77,7 @@ class Study(Shown):
     def __post_init__(self) -> None:
         check_fields(self)
         object.__setattr__(self, "weighted", tuple(self.weighted))
-        object.__setattr__(self, "predictions", tuple(self.predictions))
-        faults = list[Fault]()
+        predictions, faults = list[Prediction](), list[Fault]()
         with noted(faults):
             _ = self.parameters
         with noted(faults):
@@ -91,7 +91,11 @@ class Study(Shown):
         faults += self.uncertainty.faults(self.problem.data)
         faults += undrawn(self.uncertainty, len(self.predictions))
         faults += each_once("predictions", [prediction.name for prediction in self.predictions])
+        for prediction in self.predictions:
+            with noted(faults, f"prediction '{prediction.name}'"):
+                predictions.append(prediction.complete(self.problem))
         refuse(faults)
+        object.__setattr__(self, "predictions", tuple(predictions))
 
     def __repr__(self) -> str:
         """Return a line with the sizes of the problem."""
@@ -130,17 +134,19 @@ class Study(Shown):
         options = self.name, self.uncertainty.draws, self.predictions, self.slack
         return _hash(self.origin.digest, self.work, *options)
 
-    def completed(self) -> "Study":
-        """Return the study with what its predictions take from the nominal model.
 
-        Raises InputError with what this model cannot predict.
-        """
-        out, faults = [], list[Fault]()
-        for prediction in self.predictions:
-            with noted(faults, f"prediction '{prediction.name}'"):
-                out.append(prediction.complete(self.problem))
-        refuse(faults)
-        return replace(self, predictions=tuple(out))
+class StudyOptions(ParetoOptions, total=False):
+    """The fields of `Study` and of its `Pareto` as keywords of a function."""
+
+    pareto: Pareto | None
+    weighted: Sequence[Weighted]
+    seed: int
+    search: Search | None
+    identifiability: Identifiability | None
+    uncertainty: Uncertainty | None
+    predictions: Sequence[Prediction]
+    noise: NoisePrior | None
+    slack: float
 
 
 def _hash(*parts: object) -> str:

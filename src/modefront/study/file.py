@@ -76,10 +76,10 @@ def load(path: Path | str) -> Study:
     data = read_data(root, model)
     groups = read_groups(root, data)
     weighted = read_weights(root, [group.name for group in groups if group.name])
-    chosen: dict[str, Any] = {}
-    for key, record in OF_OPTIONS.items():
-        table = root.table(key, default=None)
-        chosen[key] = (table and table.record(record)) or record()
+    chosen: dict[str, Any] = {
+        key: root.value(key, opt.nested("a table", record), None) or record()
+        for key, record in OF_OPTIONS.items()
+    }
     uncertainty, pairing = chosen["uncertainty"], chosen.pop("pairing")
     drawn = replace(root, place="[uncertainty]")
     drawn.note(undrawn(uncertainty, bool(root.values.get("predict"))))
@@ -365,7 +365,7 @@ def register(extension: T) -> T:
         Where it is none of these, or its name is that of another one.
     """
     for family in FAMILIES:
-        if family.takes(extension):
+        if isinstance(extension, family.member):
             family.add(extension)
             return extension
     expected = ", ".join(family.what for family in FAMILIES)

@@ -58,28 +58,28 @@ def read_data(root: Table, model: Model | None) -> ModalData | None:
     table = root.table("data", "a table [data]")
     if table is None:
         return None
-    name, places, columns = table.value("file", FILE), None, dict[str, str]()
-    covariance = table.value("covariance", COVARIANCE, None)
-    if name is not None and is_universal(table.path(name)):
+    name, covariance = table.value("file", FILE), table.value("covariance", COVARIANCE, None)
+    file = None if name is None else table.path(name)
+    places, columns, universal = None, dict[str, str](), file is not None and is_universal(file)
+    if universal:
         places = table.table("sensors", "a table, sensor = node and direction", None)
     else:
         columns = table.value("columns", COLUMNS, None) or {}
     table.close()
-    if name is None:
+    if file is None:
         return None
-    path, sensors, data = Path(name), model.sensors if model else None, None
+    sensors, data = model.sensors if model else None, None
     with root.noting():
-        if is_universal(table.path(name)):
-            modes = read_uff55(table.path(name))
+        if universal:
+            modes = read_uff55(file)
             data = _of_nodes(table, places, modes, model) if model else None
-        elif path.suffix.lower() == ".csv":
+        elif file.suffix.lower() == ".csv":
             # Without a model all columns may be sensors: what else is wrong is found nevertheless.
-            data = read_csv(table.path(name), sensors, columns)
-        elif path.suffix in READERS:
-            file = table.path(name)
+            data = read_csv(file, sensors, columns)
+        elif file.suffix in READERS:
             file_size(file, "a file of modal data")
             with refusing(file, "a file of modal data"):  # a user's function may raise anything
-                data = READERS[path.suffix].read(file, sensors)
+                data = READERS[file.suffix].read(file, sensors)
             if sensors is not None and tuple(data.sensors) != sensors:
                 expected = f"the sensors {', '.join(sensors)}, in this order"
                 raise wrong(file, expected, ", ".join(data.sensors))
@@ -87,8 +87,8 @@ def read_data(root: Table, model: Model | None) -> ModalData | None:
             endings = ", ".join([*READERS, ".csv", ".uff"])
             table.fault("file", f"a file that ends in {endings} or .unv", f"'{name}'")
         if covariance is not None:
-            file = table.path(covariance)
-            data = read_covariance(file, data, columns) if data else None
+            errors = table.path(covariance)
+            data = read_covariance(errors, data, columns) if data else None
     if data and model and len(data.modes) > model.size:
         found = f"{len(data.modes)} in '{name}'"
         root.fault("[data] file", f"at most {model.size} modes, as the model has", found)

@@ -2,7 +2,6 @@
 
 import hashlib
 import os
-from collections.abc import Sequence
 from contextlib import AbstractContextManager, suppress
 from dataclasses import replace
 from functools import cache, partial
@@ -24,19 +23,13 @@ from modefront.datasets import Dataset
 from modefront.errors import writing
 from modefront.front.front import Front
 from modefront.front.indicators import coverage
-from modefront.front.options import Pareto, ParetoOptions, Weighted
+from modefront.front.options import Pareto, ParetoOptions
 from modefront.front.pareto import pareto_front
 from modefront.front.point import Kind, Point
-from modefront.front.search import Search
-from modefront.identifiability.combinations import (
-    Identifiability,
-    superfluous,
-    unchanged_groups,
-)
+from modefront.identifiability.combinations import superfluous, unchanged_groups
 from modefront.inputs import wrong
 from modefront.optim.sqp import given
 from modefront.outputs import remove_unfinished, write_text
-from modefront.predictions import Prediction
 from modefront.residuals.problem import UpdatingProblem
 from modefront.results.assemble import dataset, with_intervals
 from modefront.results.files import FILE, write, written_for
@@ -45,30 +38,14 @@ from modefront.results.results import Results
 from modefront.results.shapes import mode_shapes, with_mode_shapes
 from modefront.results.verdict import with_verdict
 from modefront.study.check import refuse_too_many, refuse_unchanged_groups
-from modefront.study.definition import Study
+from modefront.study.definition import Study, StudyOptions
 from modefront.study.file import as_study
 from modefront.uncertainty.inference import infer, most_probable
-from modefront.uncertainty.noise import Uncertainty
-from modefront.uncertainty.prior import NoisePrior
 from modefront.uncertainty.sampling import DRAWS
 from modefront.work.progress import Progress
 from modefront.work.store import FOLDER, NOTE, Run, Store, locked
 from modefront.work.task import Task
 from modefront.work.workers import Workers, backend
-
-
-class StudyOptions(ParetoOptions, total=False):
-    """The fields of `Study` and of its `Pareto` as keywords of a function."""
-
-    pareto: Pareto | None
-    weighted: Sequence[Weighted]
-    seed: int
-    search: Search | None
-    identifiability: Identifiability | None
-    uncertainty: Uncertainty | None
-    predictions: Sequence[Prediction]
-    noise: NoisePrior | None
-    slack: float
 
 
 def solve(problem: UpdatingProblem, **options: Unpack[StudyOptions]) -> Results:
@@ -147,7 +124,7 @@ def run(
     study = as_study(study)
     if refined is not None:
         study = replace(study, pareto=replace(study.pareto, refined=refined))
-    study, progress = study.completed(), progress or Progress()
+    progress = progress or Progress()
 
     def done(store: Store | None = None) -> Dataset:
         # Dense problems of a hundred unknowns are slower on several threads than on one.
@@ -159,13 +136,11 @@ def run(
         return Results(done(), study.problem)
     folder = Path(folder)
     tasks = _tasks(study, folder)
-    with writing(folder):
-        folder.mkdir(parents=True, exist_ok=True)
     for path in (path for path in (tasks.parent, tasks) if path.is_symlink()):
         found = f"a link to {path.readlink()}: remove it, or choose another folder with -o"
         raise wrong(path, "a folder of its own", found, "folder")
-    with writing(tasks.parent):
-        tasks.parent.mkdir(exist_ok=True)
+    with writing(folder):
+        tasks.parent.mkdir(parents=True, exist_ok=True)
     with locked(folder):
         with writing(tasks):
             for path in (tasks, folder / FILE) if fresh or not study.work else ():

@@ -1,15 +1,15 @@
-"""Records as JSON and arrays, and back to the last digit; nothing that is read is executed.
+"""Records as bytes, and back to the last digit; nothing that is read is executed.
 
 Fields hold records, arrays, numbers, texts, None, and tuples, lists and dictionaries of these.
 """
 
+import json
 from collections.abc import Mapping
 from enum import Enum
-from typing import Any, TypeVar
+from functools import partial
+from typing import IO, Any, TypeVar
 
 import numpy as np
-
-from modefront._typing import Floats
 
 C = TypeVar("C", bound=type)
 
@@ -22,11 +22,26 @@ def record(kind: C) -> C:
     return kind
 
 
-def encode(value: Any, arrays: dict[str, Floats]) -> Any:
-    """Return a value as JSON has it, with its arrays put into ``arrays``.
+def dump(value: Any, stream: IO[bytes]) -> None:
+    """Write a value; raises TypeError for an object of a class that is not registered."""
+    arrays: dict[str, Any] = {}
+    head = json.dumps(_encoded(value, arrays)).encode()
+    np.savez(stream, allow_pickle=False, head=np.frombuffer(head, np.uint8), **arrays)
 
-    Raises TypeError for an object of a class that is not registered.
+
+def load(stream: IO[bytes]) -> Any:
+    """Return the value that `dump` has written.
+
+    Raises ValueError, LookupError or TypeError for what it does not write.
     """
+    with np.load(stream, allow_pickle=False) as file:
+        arrays = {key: file[key] for key in file.files}
+    head = arrays.pop("head").tobytes()
+    return json.loads(head, object_hook=partial(_decoded, arrays=arrays))
+
+
+def _encoded(value: Any, arrays: dict[str, Any]) -> Any:
+    """Return a value as JSON has it, with its arrays put into ``arrays``."""
     if isinstance(value, np.ndarray):
         name = str(len(arrays))
         arrays[name] = value
@@ -36,35 +51,23 @@ def encode(value: Any, arrays: dict[str, Floats]) -> Any:
     if value is None or isinstance(value, bool | int | float | str):
         return value
     if isinstance(value, tuple | list):
-        parts = [encode(part, arrays) for part in value]
+        parts = [_encoded(part, arrays) for part in value]
         return {"tuple": parts} if isinstance(value, tuple) else parts
     if isinstance(value, Mapping):
-        return {"map": [[encode(k, arrays), encode(x, arrays)] for k, x in value.items()]}
+        return {"map": [[_encoded(k, arrays), _encoded(x, arrays)] for k, x in value.items()]}
     name = type(value).__name__
     if _REGISTERED.get(name) is not type(value):
         raise TypeError(f"expected a registered record, found {type(value)}")
-    if isinstance(value, Enum):
-        return {"enum": name, "member": value.name}
-    named = {x: encode(getattr(value, x), arrays) for x in vars(value)}
-    return {"record": name, "fields": named}
+    fields = [value.value] if isinstance(value, Enum) else vars(value).values()
+    return {"record": name, "fields": [_encoded(x, arrays) for x in fields]}
 
 
-def decode(value: Any, arrays: Mapping[str, Floats]) -> Any:
-    """Return the value that `encode` has made this of.
-
-    Raises ValueError, KeyError or TypeError for what `encode` does not make.
-    """
-    if isinstance(value, list):
-        return [decode(part, arrays) for part in value]
-    if not isinstance(value, dict):
-        return value
+def _decoded(value: dict[str, Any], arrays: Mapping[str, Any]) -> Any:
+    """Return what an object of JSON stands for, of which the parts are decoded."""
     if "array" in value:
         return arrays[value["array"]]
     if "tuple" in value:
-        return tuple(decode(part, arrays) for part in value["tuple"])
+        return tuple(value["tuple"])
     if "map" in value:
-        return {decode(k, arrays): decode(x, arrays) for k, x in value["map"]}
-    kind: Any = _REGISTERED[value.get("enum") or value["record"]]
-    if "enum" in value:
-        return kind[value["member"]]
-    return kind(**{name: decode(part, arrays) for name, part in dict(value["fields"]).items()})
+        return dict(value["map"])
+    return _REGISTERED[value["record"]](*value["fields"])

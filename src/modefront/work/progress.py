@@ -8,14 +8,14 @@ their standard deviation, which counts one that is m beside the mean.
 
 import math
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Mapping
+from contextlib import AbstractContextManager
 from contextvars import ContextVar
 from dataclasses import dataclass, field
 
 import numpy as np
 
-from modefront.work.task import Costs, Count
+from modefront.work.task import Costs, Count, held
 
 Span = tuple[float, float]  # from and to
 
@@ -145,11 +145,6 @@ def note(text: str) -> None:
     _LISTENER.get()(text)
 
 
-@contextmanager
-def listening(listener: Listener) -> Iterator[None]:
+def listening(listener: Listener) -> AbstractContextManager[None]:
     """Send notes to a listener until the context ends."""
-    before = _LISTENER.set(listener)
-    try:
-        yield
-    finally:
-        _LISTENER.reset(before)
+    return held(_LISTENER, listener)

@@ -6,7 +6,6 @@ whole; arrays are stored exactly.
 
 import hashlib
 import io
-import json
 import os
 import re
 import socket
@@ -18,13 +17,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from filelock import FileLock, SoftFileLock, Timeout
 
 from modefront.errors import Fault, InputError, writing
 from modefront.outputs import write_bytes, write_text
 from modefront.text import NAME, clean
-from modefront.work.codec import decode, encode
+from modefront.work.codec import dump, load
 from modefront.work.progress import Progress
 from modefront.work.task import Costs, Count, Executor, Key, R, Task
 from modefront.work.workers import Workers
@@ -54,17 +52,13 @@ class Store:
         content = kept[:-CHECKSUM]
         if kept[-CHECKSUM:] != _checksum(task, content):
             return None
-        with np.load(io.BytesIO(content), allow_pickle=False) as file:
-            arrays = {key: file[key] for key in file.files}
-        head = json.loads(arrays.pop("head").tobytes())
-        return decode(head["result"], arrays), Costs(**head["costs"])
+        result, costs = load(io.BytesIO(content))
+        return result, costs
 
     def write(self, task: Task[Any], result: Any, costs: Costs, seconds: float = LONG) -> None:
         """Keep the result of a task, whole or not at all; a long one outlasts a power failure."""
-        arrays: dict[str, Any] = {}
-        head = json.dumps({"result": encode(result, arrays), "costs": vars(costs)})
         content = io.BytesIO()
-        np.savez(content, head=np.frombuffer(head.encode(), np.uint8), **arrays)
+        dump((result, costs), content)
         path, kept = self._path(task), content.getvalue()
         path.parent.mkdir(parents=True, exist_ok=True)
         write_bytes(path, kept + _checksum(task, kept), lasting=seconds >= LONG)

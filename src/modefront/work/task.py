@@ -7,14 +7,17 @@ Costs are counted where an eigenproblem is solved, by all counts that are open t
 import time
 import zlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, replace
 from typing import Any, Generic, TypeVar
 
 import numpy as np
 
+from modefront.work.codec import record
 
+
+@record
 @dataclass
 class Costs:
     """Numbers of solutions, and seconds that they took.
@@ -45,6 +48,8 @@ class Costs:
                 setattr(self, name, getattr(self, name) + spent)
 
 
+V = TypeVar("V")
+
 _OPEN: ContextVar[tuple[Costs, ...]] = ContextVar("open", default=())
 
 
@@ -55,24 +60,26 @@ def spend(costs: Costs) -> None:
 
 
 @contextmanager
-def counted() -> Iterator[Costs]:
-    """Count what is spent until the context ends."""
-    costs = Costs()
-    before = _OPEN.set((*_OPEN.get(), costs))
-    try:
-        yield costs
-    finally:
-        _OPEN.reset(before)
-
-
-@contextmanager
-def uncounted() -> Iterator[None]:
-    """Count nothing until the context ends: the same work was counted before."""
-    before = _OPEN.set(())
+def held(variable: ContextVar[V], value: V) -> Iterator[None]:
+    """Give a variable a value until the context ends."""
+    before = variable.set(value)
     try:
         yield
     finally:
-        _OPEN.reset(before)
+        variable.reset(before)
+
+
+@contextmanager
+def counted() -> Iterator[Costs]:
+    """Count what is spent until the context ends."""
+    costs = Costs()
+    with held(_OPEN, (*_OPEN.get(), costs)):
+        yield costs
+
+
+def uncounted() -> AbstractContextManager[None]:
+    """Count nothing until the context ends: the same work was counted before."""
+    return held(_OPEN, ())
 
 
 Part = str | int | tuple[int, ...]
@@ -159,11 +166,12 @@ def seed_sequence(seed: int, *parts: Part) -> np.random.SeedSequence:
 
 @dataclass(frozen=True)
 class Done:
-    """The result of a task, what it cost, and the seconds that it took."""
+    """The result of a task, or its error, what it cost, and the seconds that it took."""
 
     result: Any
     costs: Costs
     seconds: float
+    error: Exception | None = None
 
 
 def computed(task: Task[Any]) -> Done:

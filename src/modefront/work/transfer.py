@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from typing import Any, TypeVar
 from weakref import ref
 
-from modefront.work.task import Done, Task, computed
+from modefront.work.task import Costs, Done, Task, computed
 
 KNOWN = 3  # shared objects that a process keeps at most: those used last
 
@@ -112,16 +112,8 @@ _OBJECTS: OrderedDict[str, Any] = OrderedDict()
 _LOCK = threading.Lock()
 
 
-@dataclass(frozen=True)
-class Reply:
-    """Results that a process sends back, with the error of the task after these, if any.
-
-    Nothing was computed where the process does not know shared objects, which it names.
-    """
-
-    done: Sequence[Done] = ()
-    error: Exception | None = None
-    lacking: tuple[str, ...] = ()
+Reply = list[Done] | tuple[str, ...]
+"""What a process sends back: results, or names of shared objects that it does not know."""
 
 
 def work(message: Message, objects: dict[str, bytes]) -> Reply:
@@ -129,7 +121,7 @@ def work(message: Message, objects: dict[str, bytes]) -> Reply:
     with _LOCK:  # workers of a cluster may have several threads
         lacking = tuple(x for x in message.names if x not in _OBJECTS and x not in objects)
         if lacking:  # they may be parts of those that came
-            return Reply(lacking=lacking)
+            return lacking
         for name, content in objects.items():
             if name not in _OBJECTS:
                 _OBJECTS[name] = _Unpickler(io.BytesIO(content)).load()
@@ -138,10 +130,11 @@ def work(message: Message, objects: dict[str, bytes]) -> Reply:
         while len(_OBJECTS) > max(KNOWN, len(message.names)):
             _OBJECTS.popitem(last=False)
         tasks: list[Task[Any]] = _Unpickler(io.BytesIO(message.content)).load()
-    done: list[Done] = []
-    for task in tasks:
-        try:
-            done.append(computed(task))
-        except Exception as error:  # it belongs to the caller, with what was done before it
-            return Reply(done, error)
-    return Reply(done)
+    return list(map(_done, tasks))
+
+
+def _done(task: Task[Any]) -> Done:
+    try:
+        return computed(task)
+    except Exception as error:  # it belongs to the caller
+        return Done(None, Costs(), 0.0, error)

@@ -357,20 +357,17 @@ class Workers:
             return
         except call.pool.gone:
             raise UnfinishedError(GONE) from None
-        if reply.lacking:
-            self._submit(call, positions, message, {*lacked, *reply.lacking})
+        if isinstance(reply, tuple):
+            self._submit(call, positions, message, {*lacked, *reply})
             return
-        for k, done in zip(positions, reply.done, strict=False):
-            spend(done.costs)
-            yield k, self._learnt(call.tasks[k], done)
-        if reply.error is None:
-            return
-        failed, *others = positions[len(reply.done) :]
-        if isinstance(reply.error, MemoryError):
-            self._lose(call, failed, "its memory does not suffice")
-        else:
-            call.errors[failed] = reply.error
-        call.pending.extend(others)
+        for k, done in zip(positions, reply, strict=True):
+            if done.error is None:
+                spend(done.costs)
+                yield k, self._learnt(call.tasks[k], done)
+            elif isinstance(done.error, MemoryError):
+                self._lose(call, k, "its memory does not suffice")
+            else:
+                call.errors[k] = done.error
 
     def _lose(self, call: _Call, position: int, reason: str) -> None:
         """Note that a task was lost: it is done again, alone, and given up the second time."""

@@ -86,7 +86,7 @@ PLACES = {
     "oneOf": [{"required": ["node"]}, {"required": ["at"]}],
 }
 SCALES = opt.entries(
-    "a table, parameter = { quantity, of }", opt.table_of(opt.schema_of(fem.Parameter))
+    "a table, parameter = { quantity, of }", opt.table_of(opt.schema_of(fem.Parameter), 1)
 )
 
 
@@ -201,7 +201,7 @@ def _groups(model: opt.Table, mesh: Mesh) -> list[Group]:
     """Return the blocks of all groups; one group may have cells of several types."""
     out: list[Group] = []
     materials: dict[str, Any] = {}
-    for key, entry in model.entries("material", "a table E, nu, rho", "material"):
+    for key, entry in model.entries("material", "a table E, nu, rho"):
         is_isotropic = not isinstance(entry.values.get("E"), list)
         materials[key] = entry.record(fem.Material if is_isotropic else fem.Orthotropic)
     declared = model.values.get("material")  # those with faults too, which are said there
@@ -223,9 +223,8 @@ def _places(model: opt.Table, key: str) -> list[fem.Sensor]:
     """Return sensors; one with a list of directions becomes as many, NAMEx, NAMEy and so on."""
     out: list[fem.Sensor] = []
     required = key == "sensors"
-    for name, place in model.entries(
-        key, "a table node or at, and direction", "sensor" if required else "", required=required
-    ):
+    expected = "a table node or at, and direction"
+    for name, place in model.entries(key, expected, required=required):
         node, at, tolerance = (place.value(each, PLACED[each], None) for each in PLACED)
         directions = read_directions(place)
         place.close()

@@ -16,16 +16,15 @@ import threading
 import time
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import astuple
+from functools import cache
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from modefront.errors import Fault, InputError, reason
+from modefront.errors import Fault, InputError, reason, refuse, refusing
 from modefront.inputs import available_memory
 from modefront.outputs import output
 from modefront.text import one_line
+from modefront.work.codec import dump, load, record
 
 LEAST_SECONDS, SPEED = 60.0, 10**6
 """Time that reading may take, and bytes that are read a second at least besides: chosen against
@@ -34,10 +33,7 @@ readers that do not end, far above what whole files take."""
 TOO_MUCH = "a file that takes more than {:.2g} GB to be read: close other programs, or divide it"
 """What is said of a file that does not fit into the memory."""
 
-FAULTS = "faults"  # what is said of a file with which its reader finds faults
-
-Read = tuple[dict[str, np.ndarray[Any, Any]], Any]
-"""Arrays by name, and texts and numbers as JSON has them."""
+record(Fault)
 
 
 # 6 arguments: what is read from which file, and the limits.
@@ -48,12 +44,12 @@ def isolated(
     seconds: float | None = None,
     memory: int | None = None,
     arguments: Sequence[str] = (),
-) -> Read:
-    """Return the arrays and texts that a function reads from a file in another process.
+) -> Any:
+    """Return what a function reads from a file in another process; `dump` says what it may be.
 
     ``function`` is the ``module:name`` of one that takes the path, or what the names of files begin
-    with, and further texts, and returns `Read`. Limits in seconds and bytes are chosen by the size
-    of the file and what is free unless given; that of memory holds where the system has such.
+    with, and further texts. Limits in seconds and bytes are chosen by the size of the file and what
+    is free unless given; that of memory holds where the system has such.
 
     Raises InputError where the function raises it, and where it fails, takes too long or ends its
     process: the file is not the ``expected`` one then.
@@ -63,32 +59,26 @@ def isolated(
             files = [x for x in path.parent.iterdir() if x.name.startswith(path.stem)]
             seconds = LEAST_SECONDS + sum(x.stat().st_size for x in files if x.is_file()) / SPEED
     seconds, memory = seconds or LEAST_SECONDS, memory or available_memory()
-    try:
+    with refusing(path, expected):
         if _INSIDE:
             return _called(function, path, arguments)
         with tempfile.TemporaryDirectory(prefix="modefront-") as folder:
             answer = Path(folder) / "answer.npz"
             request = [function, [str(path), *arguments], str(answer), memory, str(Path.cwd())]
-            error, found = _SERVER.answer(request, seconds, memory)
-            if not error:
-                with np.load(answer, allow_pickle=False) as file:
-                    return {each: file[each] for each in file.files}, found
-    except InputError:
-        raise
-    except (RuntimeError, ValueError, OSError, MemoryError) as failed:
-        error = reason(failed)
-    if error == FAULTS:
-        raise InputError(Fault(*parts) for parts in found)
-    raise InputError(Fault(str(path), "file", expected, error))
+            _server(os.getpid()).answer(request, seconds, memory)
+            with answer.open("rb") as stream:
+                faults, found = load(stream)
+            refuse(faults)
+            return found
 
 
 _INSIDE = False  # whether this is a process that reads a file, so that no other one is needed
 
 
-def _called(function: str, path: Path, arguments: Sequence[str]) -> Read:
+def _called(function: str, path: Path, arguments: Sequence[str]) -> Any:
     module, name = function.split(":")
     try:
-        found: Read = getattr(importlib.import_module(module), name)(path, *arguments)
+        return getattr(importlib.import_module(module), name)(path, *arguments)
     except (InputError, MemoryError):
         raise
     except (Exception, SystemExit) as error:  # what readers raise is not documented
@@ -97,7 +87,6 @@ def _called(function: str, path: Path, arguments: Sequence[str]) -> Read:
             if isinstance(cause, MemoryError):
                 raise cause from None
         raise RuntimeError(one_line(reason(error), 400)) from None
-    return found
 
 
 class _Server:
@@ -105,13 +94,12 @@ class _Server:
 
     def __init__(self) -> None:
         self._process: subprocess.Popen[str] | None = None
-        self._owner = 0
         self._lock = threading.Lock()
 
-    def answer(self, request: Sequence[object], seconds: float, memory: int) -> tuple[str, Any]:
-        """Return what is wrong with a file, nothing if all is right, and what belongs to that.
+    def answer(self, request: Sequence[object], seconds: float, memory: int) -> None:
+        """Have a file read.
 
-        Raises RuntimeError where the process has ended, or has not answered in time.
+        Raises RuntimeError where that fails, the process ends, or it does not answer in time.
         """
         with self._lock:
             process, late = self._started(), time.monotonic() + seconds
@@ -124,8 +112,9 @@ class _Server:
                     process.stdin.write(json.dumps(request) + "\n")
                     process.stdin.flush()
                 if line := process.stdout.readline():
-                    error, found = json.loads(line)
-                    return error, found
+                    if error := json.loads(line):
+                        raise RuntimeError(error)
+                    return
                 status = process.wait()
             finally:
                 timer.cancel()
@@ -138,24 +127,22 @@ class _Server:
         raise RuntimeError(f"a file that ends its reader (signal {abs(status)})")
 
     def end(self) -> None:
-        """End the process, with what it has started, if this process owns it."""
+        """End the process, with what it has started."""
         process, self._process = self._process, None
-        if process is not None and self._owner == os.getpid():
+        if process is not None:
             _kill(process)
             with suppress(BrokenPipeError):
                 process.communicate()
 
     def _started(self) -> subprocess.Popen[str]:
-        if self._process is not None and self._owner == os.getpid():
-            if self._process.poll() is None:
-                return self._process
-            self.end()
+        if self._process is not None and self._process.poll() is None:
+            return self._process
+        self.end()
         environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
         environment |= {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "PYTHONUTF8": "1"}
-        self._owner = os.getpid()
         self._process = subprocess.Popen(
             # -P: nothing is imported from the folder that the user works in
-            [sys.executable, "-P", "-c", "from modefront.isolated import serve; serve()"],
+            [sys.executable, "-P", "-c", "from modefront.work.isolated import serve; serve()"],
             env=environment,
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
@@ -166,8 +153,13 @@ class _Server:
         return self._process
 
 
-_SERVER = _Server()
-atexit.register(_SERVER.end)
+@cache
+def _server(_: int) -> _Server:
+    """Return the server of the process with an identifier: one that is forked has its own."""
+    return _Server()
+
+
+atexit.register(lambda: _server(os.getpid()).end())
 
 
 def _kill(process: subprocess.Popen[str]) -> None:
@@ -186,22 +178,23 @@ def serve() -> None:
         os.dup2(nowhere, number)
     for line in sys.stdin:
         function, (path, *arguments), answer, memory, work = json.loads(line)
-        found: tuple[str, object]  # what is wrong with the file, and what belongs to that
+        error = ""
+        found: tuple[Sequence[Fault], object]  # what is wrong with the file, and what it holds
         try:
             importlib.import_module(function.split(":")[0])
             os.chdir(work)
             limit(memory)
-            arrays, texts = _called(function, Path(path), arguments)
+            try:
+                found = (), _called(function, Path(path), arguments)
+            except InputError as wrong:
+                found = wrong.faults, None
             with output(Path(answer)) as stream:
-                np.savez(stream, allow_pickle=False, **arrays)
-            found = "", texts
-        except InputError as error:
-            found = FAULTS, [astuple(fault) for fault in error.faults]
+                dump(found, stream)
         except MemoryError:
-            found = TOO_MUCH.format(memory / 1e9), None
-        except Exception as error:
-            found = reason(error), None
-        os.write(answers, f"{json.dumps(found)}\n".encode())
+            error = TOO_MUCH.format(memory / 1e9)
+        except Exception as failed:
+            error = reason(failed)
+        os.write(answers, f"{json.dumps(error)}\n".encode())
 
 
 def limit(memory: int) -> None:
