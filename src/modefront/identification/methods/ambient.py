@@ -222,27 +222,45 @@ def _fitted(
     found: list[Local] = []
     for group in _overlapping(modes, OVERLAP[last]):
         chosen = [modes[k] for k in group]
-        if max(group) < first:
-            found += chosen
-            continue
-        omega, half = np.array([[mode.omega, mode.half] for mode in chosen]).T
-        reach = np.minimum(REACH[last] * half, np.maximum(REACH[0] * half, WIDEST * omega))
-        reach = np.maximum(reach, LEAST_LINES / 2 * setup.spacing)
-        low, high = float(np.min(omega - reach)), float(np.max(omega + reach))
-        others = [mode for k, mode in enumerate(modes) if k not in group]
-        rest = sorted(others, key=lambda mode: mode.omega)
-        start, end = np.searchsorted([mode.omega for mode in rest], [low, high])
-        told = max((len(setup.records.sensors) - len(group)) // 2, 1)
-        nearest = min(told, BESIDE) if last else 1
-        beside = [
-            *rest[max(start - nearest, 0) : end + nearest],
-            *setup.above[: max(end + nearest - len(rest), 0)],
-        ]
-        inside = [*chosen, *rest[start:end]]
-        limits = low, high, np.array([[mode.omega, mode.half] for mode in inside]).T
-        lines, of_group = _of_group(setup, limits, chosen, beside, chance, last)
-        setup, found = replace(setup, lines=lines), found + of_group
+        if max(group) >= first:
+            others = [mode for k, mode in enumerate(modes) if k not in group]
+            setup, chosen = _together(setup, chosen, others, chance, last)
+        found += chosen
     return replace(setup, modes=tuple(found))
+
+
+def _together(
+    setup: _Setup, chosen: Sequence[Local], others: Sequence[Local], chance: float, last: bool
+) -> tuple[_Setup, list[Local]]:
+    """Return the setup and those of the chosen modes that data need, fitted at once.
+
+    Where some go in the ``last`` fit, those that stay are fitted again, in the bands of their own.
+    """
+    omega, half = np.array([[mode.omega, mode.half] for mode in chosen]).T
+    reach = np.minimum(REACH[last] * half, np.maximum(REACH[0] * half, WIDEST * omega))
+    reach = np.maximum(reach, LEAST_LINES / 2 * setup.spacing)
+    low, high = float(np.min(omega - reach)), float(np.max(omega + reach))
+    rest = sorted(others, key=lambda mode: mode.omega)
+    start, end = np.searchsorted([mode.omega for mode in rest], [low, high])
+    told = max((len(setup.records.sensors) - len(chosen)) // 2, 1)
+    nearest = min(told, BESIDE) if last else 1
+    beside = [
+        *rest[max(start - nearest, 0) : end + nearest],
+        *setup.above[: max(end + nearest - len(rest), 0)],
+    ]
+    inside = [*chosen, *rest[start:end]]
+    limits = low, high, np.array([[mode.omega, mode.half] for mode in inside]).T
+    lines, found = _of_group(setup, limits, chosen, beside, chance, last)
+    setup = replace(setup, lines=lines)
+    if not last or len(found) in (0, len(chosen)):
+        return setup, found
+    again: list[Local] = []
+    for group in _overlapping(found, OVERLAP[last]):
+        apart = [mode for k, mode in enumerate(found) if k not in group]
+        these = [found[k] for k in group]
+        setup, kept = _together(setup, these, [*others, *apart], chance, last)
+        again += kept
+    return setup, again
 
 
 def _overlapping(modes: Sequence[Local], reach: float) -> list[list[int]]:
