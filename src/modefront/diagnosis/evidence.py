@@ -137,11 +137,10 @@ class Fits:
             start = np.append(start, 1.0)
             self.ends = np.column_stack([self.ends, np.log([1 / FACTOR, FACTOR])])
         std = ratio(data.frequency_std, data.frequency)
-        self.plain = State(
-            *(data.frequency, data.damping, data.shape, np.where(std > 0, std, np.nan)),
-            *(np.zeros(()), np.array(comparison.candidates)),
-            *(self.geometry.sensor_nodes, self.geometry.sensor_directions, np.array(0), start),
-        )
+        measured = data.frequency, data.damping, data.shape, np.where(std > 0, std, np.nan)
+        sensors_at = self.geometry.sensor_nodes, self.geometry.sensor_directions
+        candidates = np.array(comparison.candidates)
+        self.plain = State(*measured, np.zeros(()), candidates, *sensors_at, np.array(0), start)
         self.together = max(1, NUMBERS // (data.shape.size * (1 + len(start))))
 
         @cache

@@ -596,11 +596,30 @@ def _before(nodes: Ints) -> Ints:
 
 
 MISTAKES: Sequence[Callable[[Explanation], Iterator[Mistake]]] = (
-    *(frequency_factor, other_quantity, set_factor, other_numbers, exchanged_shapes, wrong_factor),
-    *(exchanged_sensors, opposite_order, unsigned_shapes, copied_sensor, shifted_values),
-    *(counted_from_one, wrong_direction, wrong_place, reversed_value, odd_sensor),
-    *(wrong_nominal_value, odd_value, wrong_frequency, damping_in_percent, foreign_mode),
-    *(later_mode, wrong_unit, wrong_member),
+    frequency_factor,
+    other_quantity,
+    set_factor,
+    other_numbers,
+    exchanged_shapes,
+    wrong_factor,
+    exchanged_sensors,
+    opposite_order,
+    unsigned_shapes,
+    copied_sensor,
+    shifted_values,
+    counted_from_one,
+    wrong_direction,
+    wrong_place,
+    reversed_value,
+    odd_sensor,
+    wrong_nominal_value,
+    odd_value,
+    wrong_frequency,
+    damping_in_percent,
+    foreign_mode,
+    later_mode,
+    wrong_unit,
+    wrong_member,
 )
 """What is looked for; where two explain the data equally well, the first one is tried first."""
 
