@@ -138,7 +138,7 @@ def done(make: Callable[[], mf.Study], workers: int) -> tuple[Any, dict[str, flo
     started, first = time.perf_counter(), time.process_time()
     with backend(workers) as carrier, threadpool_limits(1, user_api="blas"):
         work = Timed(backend=carrier)
-        data = session.worked(make(), work)
+        data = session.worked(make().completed(), work)
         others = set(multiprocessing.active_children()) - before
         busy = [time.process_time() - first, *(processor_seconds(each.pid) for each in others)]
     return data, work.seconds | {"whole study": time.perf_counter() - started}, busy

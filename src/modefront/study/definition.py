@@ -42,8 +42,7 @@ class Origin:
 class Study(Shown):
     """A problem with the options of its solution.
 
-    Raises InputError with all options that contradict the problem or one another, and with what its
-    nominal model cannot predict.
+    Raises InputError with all options that contradict the problem or one another.
 
     Attributes
     ----------
@@ -55,7 +54,7 @@ class Study(Shown):
     search : extent of the search for global minima
     identifiability : limits of flat parts and of manifolds of equivalent models
     uncertainty : source of the errors of the data, and samples
-    predictions : predictions of all models, with defaults that follow from the nominal model
+    predictions : predictions of all models
     noise : what is expected of the errors of the data and the model
     slack : share by which objectives of models may be greater that count in ranges of predictions
     origin : where the study was read; None for one that was made in Python
@@ -77,7 +76,8 @@ class Study(Shown):
     def __post_init__(self) -> None:
         check_fields(self)
         object.__setattr__(self, "weighted", tuple(self.weighted))
-        predictions, faults = list[Prediction](), list[Fault]()
+        object.__setattr__(self, "predictions", tuple(self.predictions))
+        faults = list[Fault]()
         with noted(faults):
             _ = self.parameters
         with noted(faults):
@@ -91,11 +91,7 @@ class Study(Shown):
         faults += self.uncertainty.faults(self.problem.data)
         faults += undrawn(self.uncertainty, len(self.predictions))
         faults += each_once("predictions", [prediction.name for prediction in self.predictions])
-        for prediction in self.predictions:
-            with noted(faults, f"prediction '{prediction.name}'"):
-                predictions.append(prediction.complete(self.problem))
         refuse(faults)
-        object.__setattr__(self, "predictions", tuple(predictions))
 
     def __repr__(self) -> str:
         """Return a line with the sizes of the problem."""
@@ -133,6 +129,18 @@ class Study(Shown):
             return ""
         options = self.name, self.uncertainty.draws, self.predictions, self.slack
         return _hash(self.origin.digest, self.work, *options)
+
+    def completed(self) -> "Study":
+        """Return the study with what its predictions take from the nominal model.
+
+        Raises InputError with what this model cannot predict.
+        """
+        out, faults = [], list[Fault]()
+        for prediction in self.predictions:
+            with noted(faults, f"prediction '{prediction.name}'"):
+                out.append(prediction.complete(self.problem))
+        refuse(faults)
+        return replace(self, predictions=tuple(out))
 
 
 class StudyOptions(ParetoOptions, total=False):

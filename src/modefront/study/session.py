@@ -124,7 +124,7 @@ def run(
     study = as_study(study)
     if refined is not None:
         study = replace(study, pareto=replace(study.pareto, refined=refined))
-    progress = progress or Progress()
+    study, progress = study.completed(), progress or Progress()
 
     def done(store: Store | None = None) -> Dataset:
         # Dense problems of a hundred unknowns are slower on several threads than on one.
