@@ -374,6 +374,7 @@ def test_derivatives_beyond_all_bounds_leave_a_peak() -> None:
     noise = noise_of(meet, [-1] * 6, [1] * 6, [40.0])
     peak = Peak(Standardised(noise.problem).evaluate(np.zeros(6)), noise.logs, np.zeros(0))
     assert np.linalg.eigvalsh(peak.precision(np.ones(1))).min() > 0
+    assert not peak.narrow(rng)
 
 
 @pytest.mark.parametrize(

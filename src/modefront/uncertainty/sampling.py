@@ -50,11 +50,12 @@ BENT = 0.5  # length of differences for second derivatives, in standard deviatio
 
 
 def _definite(squares: Floats) -> Floats:
-    """Return 1 plus a sum of squares (p, p), with as much more as rounding may have taken of it.
+    """Return 1 plus sums of squares (..., p, p), with as much more as rounding may have taken.
 
     Where modes nearly meet, derivatives of shapes are beyond all bounds.
     """
-    return np.asarray(squares + (1 + ACCUMULATED * np.trace(squares)) * np.eye(len(squares)))
+    more = 1 + ACCUMULATED * np.trace(squares, axis1=-2, axis2=-1)
+    return np.asarray(squares + more[..., None, None] * np.eye(squares.shape[-1]))
 
 
 @dataclass(frozen=True)
@@ -147,18 +148,21 @@ class Peak:
         Along a trade-off of two groups the variance of one grows where that of the other shrinks.
         Proposed ones are independent, and hardly ever there: chains that are stay for long.
         """
-        (chains, steps), z = LINEAR, self.at.theta
-        g, weights = np.array([x.dr.T @ x.r for x in self.at.residuals[:-1]]), []
+        chains, steps = LINEAR
+        V = np.linalg.qr(self.top.dr.T)[0]  # directions that data see
+        z, squares = self.at.theta @ V, V.T @ self.squares @ V
+        g = np.array([x.dr.T @ x.r for x in self.at.residuals[:-1]]) @ V
+        weights: list[Floats] = []
         s = np.tile(self.expected, (chains, 1))
         for _ in range(steps):
-            L = np.linalg.cholesky(np.eye(z.size) + np.tensordot(1 / s, self.squares, axes=1))
+            L = np.linalg.cholesky(_definite(np.tensordot(1 / s, squares, axes=1)))
             b = np.linalg.solve(L, -(z + 1 / s @ g)[..., None])
             size = np.log(np.diagonal(L, axis1=1, axis2=2)).sum(axis=1)
             size += np.log(s) @ (self.logs.a - self.free) / 2
             weights.append((b**2).sum(axis=(1, 2)) / 2 - size)
             noisy = b + rng.normal(size=b.shape)
             step = np.linalg.solve(L.swapaxes(1, 2), noisy)[..., 0]
-            bent = np.einsum("mj,ijk,mk->mi", step, self.squares, step)
+            bent = np.einsum("mj,ijk,mk->mi", step, squares, step)
             J = self.at.J[:-1] + 2 * step @ g.T + bent
             s = (J + self.logs.floor) / rng.chisquare(self.logs.a, J.shape)
         above = np.ravel(weights) - np.median(weights)
