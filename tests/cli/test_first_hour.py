@@ -9,12 +9,10 @@ from pathlib import Path
 import pytest
 from refusals import command
 
-pytestmark = pytest.mark.usefixtures("short_chains")
-
 README = Path(__file__).parents[2] / "README.md"
 
 
-@pytest.mark.slow(6)
+@pytest.mark.slow(9)
 def test_each_command_names_the_next_until_the_report(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -34,6 +32,7 @@ def test_each_command_names_the_next_until_the_report(
     assert (tmp_path / "my study" / "study-results" / "report.html").stat().st_size < 1e6
 
 
+@pytest.mark.usefixtures("short_chains")
 @pytest.mark.slow(4)
 def test_the_commands_of_the_readme_run_one_after_another(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
