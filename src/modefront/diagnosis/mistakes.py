@@ -357,10 +357,8 @@ def wrong_member(old: Explanation) -> Iterator[Mistake]:
     first = single[np.argsort(ahead[single], kind="stable")[:MEMBERS]]
     price = float(np.log(single.size / first.size))
     for k in first.tolist():
-        several = (
-            ("wrong-member", "greater", 4.0) if dx[k] > 0 else ("wrong-member", "smaller", 0.25)
-        )
-        for kind, size, factor in (several, (IMPRECISE, "", 1.0)):
+        several = ("greater", 4.0) if dx[k] > 0 else ("smaller", 0.25)
+        for kind, (size, factor) in (("wrong-member", several), (IMPRECISE, ("", 1.0))):
             said = found(kind, "model", what=parts[k].of, place=parts[k].place, better=size)
             yield Mistake(said, [("start", -1, factor), ("part", ..., k + 1)], price)
 

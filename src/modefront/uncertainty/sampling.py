@@ -37,8 +37,11 @@ AGREE = 1.05  # deviation of all chains over that within them, from which they d
 ACCEPTED = 0.35  # share of steps nearby that are taken, below which they become shorter
 APART = 1.0  # distance of two models, in standard deviations, below which one leads to the other
 FAINT = 1e-3  # probability of a peak over that of the greatest one, below which it is left out
-WIDE = 4.0  # what degrees of freedom are divided by where `Peak.narrow` proposals are
 LINEAR = 100, 60  # Gibbs chains of the linear model, and their steps
+
+WIDE = 4.0
+"""Proposals that one draw of the linear model takes, from which on there are as many with heavier
+tails beside: of variances whose degrees of freedom are divided by this number."""
 
 SMALL, SNAPSHOTS = 100, 40  # columns of a basis that is made smaller, and models that span that
 NEAR = 3e-3
@@ -143,10 +146,11 @@ class Peak:
         return _definite(np.tensordot(1 / s, self.squares, axes=1))
 
     def narrow(self, rng: np.random.Generator) -> bool:
-        """Return whether proposals are worth less than 1 / WIDE of the draws of the linear model.
+        """Return whether proposals are worth less than 1 / WIDE draws of the linear model each.
 
         Along a trade-off of two groups the variance of one grows where that of the other shrinks.
-        Proposed ones are independent, and hardly ever there: chains that are stay for long.
+        Proposed ones are independent, and hardly ever there: a chain that is there stays for long.
+        `weights` are ln p / q, of draws from p by Gibbs' method.
         """
         chains, steps = LINEAR
         V = np.linalg.qr(self.top.dr.T)[0]  # directions that data see
