@@ -21,7 +21,7 @@ from __future__ import annotations
 import argparse
 import time
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -46,6 +46,12 @@ ALUMINIUM = fem.Material(E=70e9, nu=0.33, rho=2700.0)
 
 Claim = tuple[str, ...]
 """Kind of a mistake, and whom it blames."""
+
+OF_COLUMNS = {
+    *("reversed-sensor", "exchanged-sensors", "sensor-factor", "copied-sensor", "odd-sensor"),
+    "reversed-value",
+}
+"""Mistakes that are in the columns of sensors: where columns move later, they go with them."""
 
 
 @dataclass(frozen=True)
@@ -72,6 +78,14 @@ class Case:
         """Return the study with other parts of the data, or of the problem."""
         parts = {"data": replace(self.data, **data)} if data else changed
         return replace(self, problem=replace(self.problem, **parts), made=(*self.made, claim))
+
+    def moved(self, columns: Mapping[str, str]) -> Case:
+        """Return the study whose mistakes in columns of sensors are where the columns went."""
+        made = []
+        for kind, *names in self.made:
+            now = [columns.get(x, x) for x in names] if kind in OF_COLUMNS else names
+            made.append((kind, *(sorted(now) if kind == "exchanged-sensors" else now)))
+        return replace(self, made=tuple(made))
 
 
 def random_chain(rng: np.random.Generator) -> MatrixModel:
@@ -383,6 +397,11 @@ def shifted(case: Case) -> Case | None:
     cross, size = (psi * true).sum(axis=-1) ** 2, (psi**2).sum(axis=-1) * (true**2).sum(axis=-1)
     if np.mean(1 - cross / size) < 0.1:
         return None
+    names = case.data.sensors
+    if row.ndim > 1:
+        if any(names[start] in claim for claim in case.made):
+            return None
+        case = case.moved(dict(zip(names[start + 1 :], names[start:-1], strict=True)))
     return case.spoilt(("shifted-values", where), data={"shape": shape})
 
 
@@ -411,9 +430,11 @@ def shapes_exchanged(case: Case) -> Case | None:
 
 def turned_round(case: Case) -> Case | None:
     """Return the study with all sensors in the opposite order."""
-    shape = case.data.shape[..., ::-1]
-    claim = ("opposite-order", "sensors")
-    return case.spoilt(claim, data={"shape": shape}) if _unlike_shapes(case, shape, 0.2) else None
+    shape, names = case.data.shape[..., ::-1], case.data.sensors
+    if not _unlike_shapes(case, shape, 0.2):
+        return None
+    case = case.moved(dict(zip(names, names[::-1], strict=True)))
+    return case.spoilt(("opposite-order", "sensors"), data={"shape": shape})
 
 
 def unsigned(case: Case) -> Case | None:

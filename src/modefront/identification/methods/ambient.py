@@ -314,8 +314,10 @@ def _of_group(
         low, high = band.omega[[0, -1]]
         least = chdtri(np.maximum(freedom, len(phi) + 2), chance)
         # a mode that left the band, is narrower than a line, doubles a stronger one, or is as flat
-        # as the band that its own damping asks for, explains nothing
-        astray = (omega < low) | (omega > high) | (last & (4 * zeta * omega > high - low))
+        # as the last band, or as any in which flanks are linear, explains nothing
+        astray = (omega < low) | (omega > high)
+        flat = (high - low) / 4 if last else np.maximum((high - low) / 2, WIDEST * omega)
+        astray |= zeta * omega > flat
         astray |= 2 * zeta * omega < setup.spacing
         astray |= selection.doubles(omega * (1j - zeta), phi.T.astype(complex), gain)
         worth = np.where(held, np.inf, np.where(astray, 0.0, gain))
