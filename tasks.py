@@ -73,7 +73,8 @@ def set_up(requirements: str) -> None:
     print("setting up .venv (once; about a minute)", file=sys.stderr)
     if found != digest:
         venv.create(ENVIRONMENT, with_pip=True, clear=True)
-    pip = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
+    # What is used is compiled where it is imported first: most of what is installed never is.
+    pip = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-compile"]
     run(*pip, "--require-hashes", "--only-binary=:all:", "-r", str(ROOT / requirements))
     if found != digest:
         run(*pip, "--no-deps", "--no-build-isolation", "--editable", str(ROOT))
