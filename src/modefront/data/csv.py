@@ -474,7 +474,8 @@ def read_numbers(path: Path, what: str) -> tuple[list[str], Floats]:
     """Return header and rows of a CSV file of numbers, NaN in empty columns; raises InputError."""
     lines, separator, _ = _lines(path, what)
     with suppress(ValueError, csv.Error):
-        header = [field.strip() for field in next(csv.reader(lines, delimiter=separator), [])]
+        reader = csv.reader(lines, delimiter=separator, skipinitialspace=True)
+        header = [field.strip() for field in next(reader, [])]
         texts = [x for line in lines[1:] if (x := line.rstrip("\r\n")).strip(SEPARATORS + " ")]
         texts = texts if separator == "," else [x.replace(",", ".") for x in texts]
         values = np.loadtxt(texts or ["?"], delimiter=separator, comments=None, ndmin=2)
