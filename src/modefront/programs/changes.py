@@ -19,6 +19,7 @@ NUMBER = re.compile(r"(?<![\w.])[+-]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d+|[+-]\d
 COMMENTS = ("**", "$", "!", "#")  # how these begin, in one program or another
 
 SUFFIXES = (".inp", ".dat", ".bdf", ".nas", ".mac", ".py", ".tcl")
+FIELDS = (".dat", ".bdf", ".nas")  # of Nastran, whose lines without commas have fields of 8 columns
 CHANGES, KEPT = "changes.json", "deck-"
 """File of the changes in the folder of a study, and beginning of the name of the nominal deck."""
 
@@ -45,20 +46,39 @@ def times(
     digits: int = 9,
 ) -> dict[int, str]:
     """Return the changed lines, by their numbers, with their numbers times the parameters."""
-    factors: dict[int, dict[tuple[int, int], float]] = {}
+    factors: dict[int, dict[tuple[int, int, int], float]] = {}
     for each in changes:
         line = factors.setdefault(each.line, {})
-        line |= {span: line.get(span, 1.0) * theta[each.parameter] for span in each.spans}
+        places = [_field(each, *span) for span in each.spans]
+        line |= {place: line.get(place, 1.0) * theta[each.parameter] for place in places}
     out = {k: lines[k] for k in factors}
     for k, text in out.items():
-        for (first, last), factor in sorted(factors[k].items(), reverse=True):
-            number = f"{fortran(lines[k][first:last]) * factor:.{digits}g}"
-            mantissa, e, exponent = number.partition("e")
-            # Some programs take a number without a decimal point for an integer.
-            point = "" if "." in mantissa else "."
-            text = f"{text[:first]}{mantissa}{point}{e}{exponent}{text[last:]}"
+        for (first, last, width), factor in sorted(factors[k].items(), reverse=True):
+            number = _number(fortran(lines[k][first:last]) * factor, digits, width)
+            text = f"{text[:first]}{number}{text[last:]}"
         out[k] = text
     return out
+
+
+def _field(change: Change, first: int, last: int) -> tuple[int, int, int]:
+    """Return where a number is replaced, and how wide the other one is to be; 0 for any width."""
+    text, width = change.text, 16 if "*" in change.text[:8] else 8
+    begin = 8 + (first - 8) // width * width
+    is_free = "," in text or Path(change.file).suffix.lower() not in FIELDS
+    if is_free or begin < 8 or last > begin + width or text[begin:first].strip():
+        return first, last, 0
+    return begin, min(begin + width, len(text)), width
+
+
+def _number(value: float, digits: int, width: int) -> str:
+    """Return a number; in a field of a ``width`` with as many digits as it has room for."""
+    mantissa, e, exponent = f"{value:.{digits}g}".partition("e")
+    # Some programs take a number without a decimal point for an integer.
+    mantissa += "" if "." in mantissa else "."
+    if not width:
+        return f"{mantissa}{e}{exponent}"
+    out = f"{mantissa}{int(exponent):+}" if e else mantissa
+    return out.rjust(width) if len(out) <= width else _number(value, digits - 1, width)
 
 
 def changes(
