@@ -257,3 +257,10 @@ def test_numbers_of_nastran_stay_in_their_fields(tmp_path: Path) -> None:
     assert first == "MAT1           11.788+11             0.3  7850.0"
     assert second == large.replace("       2.1+11", "1.78759259+11")
     assert third == "MAT1,1,1.78759259e+11,,.3"
+
+
+def test_the_deck_of_a_job_with_a_point_in_its_name(tmp_path: Path) -> None:
+    for job, text in (("base", "2.0,"), ("k-1", "2.0,"), ("k-1.5", "3.0,")):
+        (tmp_path / f"{job}.inp").write_text(f"*SPRING\n{text}\n")
+    (change,), other = changes("k", tmp_path / "base", tmp_path / "k-1.5", 1.5)
+    assert (change.line, change.text, other) == (2, "2.0,", None)

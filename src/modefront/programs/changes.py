@@ -140,8 +140,8 @@ def write_deck(study: Path, theta: Mapping[str, float], folder: Path) -> str:
 
 
 def _deck(path: Path) -> Path | None:
-    stem = path.with_suffix("") if path.suffix else path
-    files = (*(stem.with_name(stem.name + x) for x in SUFFIXES), path)
+    stems = (path, path.with_suffix(""))  # names of jobs may have a point
+    files = (*(stem.with_name(stem.name + x) for stem in stems for x in SUFFIXES), path)
     decks = (x for x in files if x.suffix.lower() in SUFFIXES and x.is_file())
     return next((x for x in decks if x.stat().st_size < 2**26), None)
 
