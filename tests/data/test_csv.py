@@ -90,6 +90,13 @@ def test_quoted_names_behind_a_blank_have_no_quotes(tmp_path: Path) -> None:
     assert read_numbers(tmp_path / "y.csv", "records")[0] == ["time", "acc 1", "acc 2"]
 
 
+def test_commas_of_names_in_quotes_separate_nothing(tmp_path: Path) -> None:
+    text = 'mode;frequency;"deck, left, low";"deck, top"\n1;4,5;1,5;2\n'
+    data = read(tmp_path, text, None)
+    assert data.sensors == ("deck, left, low", "deck, top")
+    assert data.shape.tolist() == [[[1.5, 2.0]]]
+
+
 def test_line_numbers_are_those_of_the_file(tmp_path: Path) -> None:
     with pytest.raises(InputError) as caught:
         read(tmp_path, "\nset,mode,frequency,damping,low,top\n\na,1,x,,1,2\n\na,2,4,,y,2\n")
