@@ -264,3 +264,19 @@ def test_the_deck_of_a_job_with_a_point_in_its_name(tmp_path: Path) -> None:
         (tmp_path / f"{job}.inp").write_text(f"*SPRING\n{text}\n")
     (change,), other = changes("k", tmp_path / "base", tmp_path / "k-1.5", 1.5)
     assert (change.line, change.text, other) == (2, "2.0,", None)
+
+
+def test_a_deck_of_which_some_numbers_are_not_known_is_not_written(tmp_path: Path) -> None:
+    """Of a rod, the radius of which doubles, area and moment have no factor of two."""
+    nominal, text = tmp_path / "rod.inp", "*ELASTIC\n{E},\n*SECTION\n{r},\n{A},\n"
+    nominal.write_text(text.format(E=2.0, r=3.0, A=9.0))
+    nominal.with_stem("E").write_text(text.format(E=4.0, r=3.0, A=9.0))
+    nominal.with_stem("r").write_text(text.format(E=2.0, r=6.0, A=36.0))
+    (known, _), (unknown, _) = (changes(x, nominal, nominal.with_stem(x), 2.0) for x in "Er")
+    assert (len(known), unknown) == (1, [])
+    write_changes(tmp_path / CHANGES, known)
+    (tmp_path / "out").mkdir()
+    assert "numbers that r multiplies are not known" in write_deck(
+        tmp_path, {"E": 1.5, "r": 1.1}, tmp_path / "out"
+    )
+    assert not list((tmp_path / "out").iterdir())

@@ -86,24 +86,27 @@ def changes(
 ) -> tuple[list[Change], tuple[float, int] | None]:
     """Return the lines in which a run multiplies numbers of the nominal deck by a factor.
 
-    If all numbers that it changes have another factor, this and a line of it are returned too.
+    None where other numbers change too. If all have another factor, this and a line of it are
+    returned as well.
     """
     deck, lines = _deck(nominal), [deck_text(job).splitlines() for job in (nominal, run)]
     if not deck or len(lines[0]) != len(lines[1]):
         return [], None
-    out, found = list[Change](), dict[float, int]()
+    out, found, whole = list[Change](), dict[float, int](), True
     for number, (old, new) in enumerate(zip(*lines, strict=True), start=1):
         if old == new:
             continue
         spans, factors = _changed(old, new)
-        if spans and all(abs(x / factor - 1) <= 1e-6 for x in factors):
+        of_factor = all(abs(x / factor - 1) <= 1e-6 for x in factors)
+        if spans and of_factor:
             out.append(Change(parameter, deck.name, number, old, tuple(spans)))
         if not old.lstrip().startswith(COMMENTS):
+            whole &= of_factor or not spans
             for x in factors:
                 found.setdefault(float(f"{x:.6g}"), number)
     value, line = next(iter(found.items()), (0.0, 0))
     is_other = len(found) == 1 and value > 0 and abs(value / factor - 1) >= 1e-5
-    return out, (value, line) if is_other else None
+    return out if whole else [], (value, line) if is_other else None
 
 
 def deck_text(job: Path) -> str:
@@ -122,14 +125,17 @@ def text_of(deck: Path) -> str:
 def write_deck(study: Path, theta: Mapping[str, float], folder: Path) -> str:
     """Write the deck of a study with updated values: that which its folder keeps, or the job's own.
 
-    It is left out where one is no parameter, and where it is not there as it was imported: what
-    was not written, and why, is returned, else nothing.
+    It is left out where one is no parameter, or a parameter has no lines, and where it is not there
+    as it was imported: what was not written, and why, is returned, else nothing.
     """
     changes = read_changes(study / CHANGES) if (study / CHANGES).is_file() else []
     decks = [study / f"{beginning}{each.file}" for each in changes[:1] for beginning in (KEPT, "")]
     kept = next((path for path in decks if path.is_file()), None)
-    if kept is None or {each.parameter for each in changes} - set(theta):
+    known = {each.parameter for each in changes}
+    if kept is None or known - set(theta):
         return ""
+    if unknown := [name for name in theta if name not in known]:
+        return f"{changes[0].file}: the numbers that {', '.join(unknown)} multiplies are not known"
     lines = dict(enumerate(text_of(kept).splitlines(keepends=True), start=1))
     for each in changes:
         if lines.get(each.line, "").splitlines() != [each.text]:
