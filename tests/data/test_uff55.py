@@ -136,7 +136,7 @@ def test_older_systems_turn_components_and_coordinates(tmp_path: Path) -> None:
     path.write_text(text + path.read_text())
     modes = read_uff55(path)
     np.testing.assert_allclose(modes.axes[1], [[0, 1, 0], [0, 0, 1], [1, 0, 0]], atol=1e-12)
-    np.testing.assert_allclose(modes.position, [[0, 0, 2], [3.0, 1.5, 3.0]])
+    np.testing.assert_allclose(modes.position, [[0.0, 0.0, 2.0], [3.0, 1.5, 3.0]])
     path.write_text(path.read_text().replace(head, head[:20] + f"{3:10d}" + head[30:]))
     other = read_uff55(path)  # of a system in another one
     assert np.isnan(other.axes[1]).all()

@@ -352,8 +352,8 @@ def is_universal(file: Path | str) -> bool:
 def read_uff55(path: Path) -> NodalModes:
     """Return the modes of a universal file; raises InputError where it holds none or is broken."""
     what = "a universal file with modes (dataset 55)"
-    known = {15: _nodes, 2411: _nodes, 18: _systems, 2420: _systems, 55: _mode}
-    found = _decoded(path, what, 55, known)
+    of_systems = dict.fromkeys((18, 2420), _systems)
+    found = _decoded(path, what, 55, {15: _nodes, 2411: _nodes, **of_systems, 55: _mode})
     points: list[Point] = found[15] + found[2411]
     once(path, "nodes", "each node", (node for node, *_ in points))
     return _assembled(path, found[55], points, dict(found[18] + found[2420]))

@@ -142,10 +142,7 @@ def read_mesh_model(table: opt.Table, parameters: Sequence[str]) -> Model | None
     count, used = len(mesh.nodes), set[str]()
 
     def nodes(member: opt.Table, key: str) -> list[int] | int:
-        """Return nodes: one, or those of a list of nodes and of groups or node sets of the mesh.
-
-        Each comes once, but for the partners of others.
-        """
+        """Return one node, or those of a list of nodes, groups and node sets, once but for `to`."""
         out, before = list[int](), len(table.faults)
         given = member.value(key, NODES)
         for place in [] if given is None else listed(given):
