@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from modefront.data.csv import read_csv
+from modefront.data.csv import read_csv, read_numbers
 from modefront.data.modal import ModalData, modal_data
 from modefront.errors import InputError
 from modefront.models.chain import chain
@@ -83,6 +83,18 @@ def test_what_spreadsheets_write(tmp_path: Path) -> None:
     )
     assert data.sets == ("set, first",)
     assert data.shape.tolist() == [[[1.0, 2.0]]]
+
+
+def test_quoted_names_behind_a_blank_have_no_quotes(tmp_path: Path) -> None:
+    (tmp_path / "y.csv").write_text('time, "acc 1", acc 2\n0.0, 1.0, 2.0\n0.1, 3.0, 4.0\n')
+    assert read_numbers(tmp_path / "y.csv", "records")[0] == ["time", "acc 1", "acc 2"]
+
+
+def test_commas_of_names_in_quotes_separate_nothing(tmp_path: Path) -> None:
+    text = 'mode;frequency;"deck, left, low";"deck, top"\n1;4,5;1,5;2\n'
+    data = read(tmp_path, text, None)
+    assert data.sensors == ("deck, left, low", "deck, top")
+    assert data.shape.tolist() == [[[1.5, 2.0]]]
 
 
 def test_line_numbers_are_those_of_the_file(tmp_path: Path) -> None:

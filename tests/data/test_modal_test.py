@@ -280,6 +280,14 @@ def test_columns_are_named_freely(tmp_path: Path) -> None:
         read_test(test)
 
 
+def test_a_name_with_a_hyphen_turns_no_sign(tmp_path: Path) -> None:
+    H = {"deck-1": _functions(0)["a"], "deck": _functions(0)["b"]}
+    _csv(tmp_path / "0.csv", np.arange(1, 31.0), H)
+    (found,) = read_test(_test_file(tmp_path, ["0.csv"], ["deck"])).sets
+    assert found.data.responses == ("deck-1", "deck")
+    np.testing.assert_allclose(found.data.H[0], [H["deck-1"], H["deck"]], rtol=1e-8)
+
+
 @pytest.mark.parametrize("value", ["", "0", "2.5"])
 def test_functions_that_say_nothing_are_left_out(tmp_path: Path, value: str) -> None:
     path = _csv(tmp_path / "a.csv", np.arange(1, 31.0), _functions(0))

@@ -125,6 +125,24 @@ def test_cylindrical_systems_and_those_that_are_not_known(tmp_path: Path) -> Non
     np.testing.assert_array_equal(unsaid.axes[1], np.eye(3))
 
 
+def test_older_systems_turn_components_and_coordinates(tmp_path: Path) -> None:
+    # The same system as that of `system`, by its origin, a point on x, and one in the plane x-z.
+    points = [[0.0, 0, 1, 0, 5, 1], [2.0, 3, 1]]
+    numbers = ["".join(f"{x:13.5E}" for x in row) for row in points]
+    head = "".join(f"{x:10d}" for x in (4, 0, 0, 8, 1))
+    text = "\n".join(["    -1", "    18", head, "local", *numbers, "    -1", ""])
+    known = pyuff.prepare_15(NODES, [0, 4], [0, 4], [0, 0], [0.0, 1.5], [0.0, 2.0], [2.0, 3.0])
+    path = write(tmp_path / "a.uff", known)
+    path.write_text(text + path.read_text())
+    modes = read_uff55(path)
+    np.testing.assert_allclose(modes.axes[1], [[0, 1, 0], [0, 0, 1], [1, 0, 0]], atol=1e-12)
+    np.testing.assert_allclose(modes.position, [[0.0, 0.0, 2.0], [3.0, 1.5, 3.0]])
+    path.write_text(path.read_text().replace(head, head[:20] + f"{3:10d}" + head[30:]))
+    other = read_uff55(path)  # of a system in another one
+    assert np.isnan(other.axes[1]).all()
+    assert np.isnan(other.position[1]).all()
+
+
 @pytest.mark.parametrize(
     ("content", "says"),
     [

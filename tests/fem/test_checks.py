@@ -189,6 +189,30 @@ def test_partly_held_floating_structure_keeps_its_free_motion() -> None:
     assert len(model.dofs.free) == 24
 
 
+BRACES = np.array([[0, 2], [1, 3], [2, 4], [3, 5], [0, 5]])
+
+
+@pytest.mark.parametrize(
+    "inner",
+    [
+        {"groups": (fem.Trusses("braces", BRACES, STEEL, 1e-4),)},
+        {"springs": (fem.Spring("k", [1, 2], 1e4, to=[4, 5]),)},
+        {"links": (fem.Link(1, [4]),)},
+    ],
+)
+@pytest.mark.parametrize("supports", [(), (fem.Support(0, ("x", "y", "z", "rx", "ry")),)])
+def test_what_strains_nothing_within_a_rigid_body_holds_nothing(
+    supports: tuple[fem.Support, ...], inner: dict[str, Any]
+) -> None:
+    nodes = np.random.default_rng(1).normal(size=(6, 3))
+    frame = fem.Beams("frame", np.column_stack([np.arange(5), np.arange(1, 6)]), STEEL, ROUND)
+    known = {"groups": (), **inner}
+    known["groups"] = (frame, *known["groups"])
+    free = 6 if not supports else 1
+    with pytest.raises(InputError, match=rf"mechanism: .*\({free} independent motions\)"):
+        fem.assemble(fem.Structure(nodes, supports=supports, **known))
+
+
 def test_a_large_mesh_of_unmerged_elements_is_refused() -> None:
     nodes, quads = fem.grids.plate(1.0, 1.0, 60, 60)
     apart = nodes[quads].reshape(-1, 3)

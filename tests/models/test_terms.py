@@ -64,3 +64,10 @@ def test_a_term_that_is_none_is_named() -> None:
     identity = np.eye(2)
     with pytest.raises(mf.InputError, match=r"a product of powers of parameters, found 'q.2'"):
         mf.matrices(["k"], {"q^2": identity}, {"base": identity}, {"a": 0})
+
+
+def test_no_parameter_has_the_name_of_the_constant_term() -> None:
+    with pytest.raises(mf.InputError, match="parameters: expected names other than 'base'"):
+        mf.chain(["base", "k"], [1.0, 1.0], [4.0, 4.0], stiffness_parameters=["base", "k"])
+    with pytest.raises(mf.InputError, match="--parameter base: expected another name"):
+        mf.import_model("opensees", "nominal", {"base": "run"})

@@ -239,3 +239,44 @@ def test_a_deck_comes_back_with_the_bytes_that_no_parameter_changes(
         assert not write_deck(tmp_path, {"E": factor}, tmp_path / "out")
         expected = nominal.read_bytes().replace(b"2.0E11", number)
         assert (tmp_path / "out" / "beam.inp").read_bytes() == expected
+
+
+def test_numbers_of_nastran_stay_in_their_fields(tmp_path: Path) -> None:
+    deck = tmp_path / "plate.bdf"
+    fixed = "MAT1           1  2.1+11             0.3  7850.0"
+    large = f"{'MAT1*':8}{'1':>16}{'2.1+11':>16}{'':16}{'0.3':>16}"
+    free = "MAT1,1,2.1+11,,.3"
+    for name, E in (("plate", "2.1+11"), ("run", "4.2+11")):
+        rows = (text.replace("2.1+11", E) for text in (fixed, large, free))
+        deck.with_stem(name).write_text("\n".join(rows))
+    found, _ = changes("E", deck, deck.with_stem("run"), 2.0)
+    write_changes(tmp_path / CHANGES, found)
+    (tmp_path / "out").mkdir()
+    assert not write_deck(tmp_path, {"E": 0.8512345678}, tmp_path / "out")
+    first, second, third = (tmp_path / "out" / deck.name).read_text().splitlines()
+    assert first == "MAT1           11.788+11             0.3  7850.0"
+    assert second == large.replace("       2.1+11", "1.78759259+11")
+    assert third == "MAT1,1,1.78759259e+11,,.3"
+
+
+def test_the_deck_of_a_job_with_a_point_in_its_name(tmp_path: Path) -> None:
+    for job, text in (("base", "2.0,"), ("k-1", "2.0,"), ("k-1.5", "3.0,")):
+        (tmp_path / f"{job}.inp").write_text(f"*SPRING\n{text}\n")
+    (change,), other = changes("k", tmp_path / "base", tmp_path / "k-1.5", 1.5)
+    assert (change.line, change.text, other) == (2, "2.0,", None)
+
+
+def test_a_deck_of_which_some_numbers_are_not_known_is_not_written(tmp_path: Path) -> None:
+    """Of a rod, the radius of which doubles, area and moment have no factor of two."""
+    nominal, text = tmp_path / "rod.inp", "*ELASTIC\n{E},\n*SECTION\n{r},\n{A},\n"
+    nominal.write_text(text.format(E=2.0, r=3.0, A=9.0))
+    nominal.with_stem("E").write_text(text.format(E=4.0, r=3.0, A=9.0))
+    nominal.with_stem("r").write_text(text.format(E=2.0, r=6.0, A=36.0))
+    (known, _), (unknown, _) = (changes(x, nominal, nominal.with_stem(x), 2.0) for x in "Er")
+    assert (len(known), unknown) == (1, [])
+    write_changes(tmp_path / CHANGES, known)
+    (tmp_path / "out").mkdir()
+    assert "numbers that r multiplies are not known" in write_deck(
+        tmp_path, {"E": 1.5, "r": 1.1}, tmp_path / "out"
+    )
+    assert not list((tmp_path / "out").iterdir())

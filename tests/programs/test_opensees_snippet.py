@@ -48,7 +48,11 @@ def snippet() -> str:
 
 
 class StandIn:
-    """What the snippet calls of OpenSees, for two masses between springs along x."""
+    """What the snippet calls of OpenSees, for two masses between springs along x.
+
+    Node 11 follows node 9 in x: its own directions come first in the answer of OpenSees, then those
+    of node 9.
+    """
 
     def __init__(self, k: float) -> None:
         self.K = scipy.sparse.csr_array([[3.0 + k, -k], [-k, k]])
@@ -71,13 +75,19 @@ class StandIn:
         self.solver.solve(index_ptr, indices, A.data.tobytes(), A.shape[0], rhs=None)
 
     def getNodeTags(self) -> list[int]:
-        return [4, 7, 9]
+        return [4, 7, 9, 11]
 
     def nodeCoord(self, node: int) -> list[float]:
         return [float(node), 0.0]
 
     def nodeDOFs(self, node: int) -> list[int]:
-        return {4: [-1, -1], 7: [1, -1], 9: [0, -1]}[node]
+        return {4: [-1, -1], 7: [1, -1], 9: [0, -1], 11: [-1, 0]}[node]
+
+    def getConstrainedDOFs(self, node: int) -> list[int]:
+        return [1] if node == 11 else []
+
+    def nodeDisp(self, _: int) -> list[float]:
+        return [0.0, 0.0]
 
     def getEleTags(self) -> list[int]:
         return [1, 2]

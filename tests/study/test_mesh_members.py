@@ -65,6 +65,12 @@ nodes = 0
 stiffness = [1e7, 1e7, 1e8, 1e5, 2e5, 1e5]
 axes = [[1.0, 0.5, 0.0], [0.0, 1.0, 0.0]]
 
+[[spring]]
+name = "stays"
+nodes = [3, 4]
+to = [1, 1]
+stiffness = 1e5
+
 [[mass]]
 name = "ice"
 nodes = 2
@@ -116,7 +122,10 @@ IN_PYTHON = fem.Structure(
         fem.Trusses("guys", GUYS, STEEL, 5e-5, force=4e3),
     ),
     supports=(fem.Support([3, 4]), fem.Support(5, axes=((1, 1, 0), (0, 0, 1)))),
-    springs=(fem.Spring("foot", 0, (1e7, 1e7, 1e8, 1e5, 2e5, 1e5), axes=((1, 0.5, 0), (0, 1, 0))),),
+    springs=(
+        fem.Spring("foot", 0, (1e7, 1e7, 1e8, 1e5, 2e5, 1e5), axes=((1, 0.5, 0), (0, 1, 0))),
+        fem.Spring("stays", [3, 4], 1e5, to=[1, 1]),
+    ),
     masses=(fem.Mass("ice", 2, (3.0, 3.0, 5.0)), fem.Mass("lamp", 6, 2.0)),
     couplings=(fem.Coupling(6, [1, 2], [1.0, 2.0], ("x", "y", "z")),),
     loads=(fem.Load("weight", 2, (0, 0, -500.0), (0, 0, -9.81), {"guys": -1e-4}),),

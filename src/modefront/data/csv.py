@@ -1,7 +1,7 @@
 """Tables in CSV: modal data, frequency response functions, and the records of blows.
 
 ``docs/study-file.md`` and ``docs/identification.md`` describe them. Separators are those that the
-header has most of, or as a line ``sep=;`` before it says.
+header has most of, names in quotes apart, or as a line ``sep=;`` before it says.
 """
 
 import csv
@@ -290,7 +290,7 @@ def _lines(path: Path, what: str) -> tuple[list[str], str, int]:
     text = "".join(lines[first : first + 1])
     if declared := re.fullmatch(r'"?sep=([,;\t])"?[,;\t \r\n]*', text, re.IGNORECASE):
         return lines[first + 1 :], declared[1], first + 1  # as spreadsheets say it
-    return lines, max(SEPARATORS, key=text.count), 0
+    return lines, max(SEPARATORS, key=re.sub('"[^"]*"', "", text).count), 0
 
 
 def _header_faults(header: Sequence[str], sensors: Sequence[str]) -> list[Said]:
@@ -474,7 +474,8 @@ def read_numbers(path: Path, what: str) -> tuple[list[str], Floats]:
     """Return header and rows of a CSV file of numbers, NaN in empty columns; raises InputError."""
     lines, separator, _ = _lines(path, what)
     with suppress(ValueError, csv.Error):
-        header = [field.strip() for field in next(csv.reader(lines, delimiter=separator), [])]
+        reader = csv.reader(lines, delimiter=separator, skipinitialspace=True)
+        header = [field.strip() for field in next(reader, [])]
         texts = [x for line in lines[1:] if (x := line.rstrip("\r\n")).strip(SEPARATORS + " ")]
         texts = texts if separator == "," else [x.replace(",", ".") for x in texts]
         values = np.loadtxt(texts or ["?"], delimiter=separator, comments=None, ndmin=2)

@@ -101,7 +101,7 @@ class SetFiles:
 
 def channel_name(channel: str, names: Mapping[str, str]) -> tuple[str, int]:
     """Return the name of a channel, such as 1Z, and the sign of its direction, as 1-Z has it."""
-    label = next((known for known in names if known.replace("-", "") == channel), channel)
+    label = next((known for known in names if known.replace("-", "") == channel), "")
     return names.get(label, channel), -1 if "-" in label else 1
 
 

@@ -5,7 +5,7 @@ A dataset stands between two lines with -1; what it declares is compared with wh
 first lines of a dataset 55 says that both shapes are a basis of a plane.
 
 Format: Structural Dynamics Research Laboratory, University of Cincinnati, *Universal File
-Formats*, datasets 15, 55, 58, 58b, 2411 and 2420.
+Formats*, datasets 15, 18, 55, 58, 58b, 2411 and 2420.
 """
 
 import re
@@ -38,7 +38,7 @@ SUFFIXES = (".uff", ".unv", ".uf", ".bunv", ".ufb")  # ends of names of universa
 REAL = {2: 1, 5: 2}  # numbers of a value by the type of data
 NAMES = tuple(AXES.values())  # directions in the order of the components
 
-KNOWN = (15, 55, 58, 2411, 2420)
+KNOWN = (15, 18, 55, 58, 2411, 2420)
 """Datasets that are read, whose numbers may have blanks before them as no other line has."""
 
 OPENING = re.compile(
@@ -46,8 +46,11 @@ OPENING = re.compile(
     re.MULTILINE,
 )
 HEADER, RECORD_7 = 11, 6  # lines of dataset 58 before its numbers; that with their number, from 0
-Point = tuple[int, int, Floats]  # a node: its number, displacement system and coordinates (3,)
-System = tuple[int, Floats]  # of coordinates: its type, its axes in rows and its origin (4, 3)
+Point = tuple[int, int, int, Floats]
+"""A node: its number, the systems of its coordinates and its displacement, and coordinates (3,)."""
+
+System = tuple[int, Floats, Floats]
+"""A system of coordinates: its type, its axes (3, 3) in rows, and its origin (3,)."""
 
 
 @dataclass(frozen=True)
@@ -349,10 +352,11 @@ def is_universal(file: Path | str) -> bool:
 def read_uff55(path: Path) -> NodalModes:
     """Return the modes of a universal file; raises InputError where it holds none or is broken."""
     what = "a universal file with modes (dataset 55)"
-    found = _decoded(path, what, 55, {15: _nodes, 2411: _nodes, 2420: _systems, 55: _mode})
+    of_systems = dict.fromkeys((18, 2420), _systems)
+    found = _decoded(path, what, 55, {15: _nodes, 2411: _nodes, **of_systems, 55: _mode})
     points: list[Point] = found[15] + found[2411]
     once(path, "nodes", "each node", (node for node, *_ in points))
-    return _assembled(path, found[55], points, dict(found[2420]))
+    return _assembled(path, found[55], points, dict(found[18] + found[2420]))
 
 
 def _integers(line: str, count: int) -> list[int]:
@@ -431,36 +435,42 @@ def _nodes(block: Block) -> list[Point]:
         raise ValueError(f"{len(lines)} lines of nodes, {step} each")
     for k in range(0, len(lines), step):
         words = lines[k].split()
-        node, _, system, _ = _integers(" ".join(words[:4]), 4)
+        node, of_point, system, _ = _integers(" ".join(words[:4]), 4)
         point = reals(" ".join([*words[4:], *lines[k + 1 : k + step]]))
         counted(block.file, f"{block.place}, node {node}", "coordinates", 3, len(point))
-        out.append((node, system, np.array(point)))
+        out.append((node, of_point if block.number == 15 else 0, system, np.array(point)))
     return out
 
 
 def _systems(block: Block) -> list[tuple[int, System]]:
-    lines, out = block.lines, list[tuple[int, System]]()
-    if len(lines) % 6 != 2:
-        raise ValueError(f"{len(lines)} lines: two, and six a system")
-    for k in range(2, len(lines), 6):
-        label, kind, _ = _integers(lines[k], 3)
-        rows = [reals(line) for line in lines[k + 2 : k + 6]]
-        out.append((label, (kind, np.array(rows).reshape(4, 3))))
+    """Return the systems of a dataset 18, by three points, or 2420, by axes and origin."""
+    by_points, lines, out = block.number == 18, block.lines, list[tuple[int, System]]()
+    head, each = (0, 4) if by_points else (2, 6)
+    if (len(lines) - head) % each:
+        raise ValueError(f"{len(lines)} lines: {head}, and {each} a system")
+    for k in range(head, len(lines), each):
+        label, kind, reference, *_ = _integers(lines[k], 5 if by_points else 3)
+        rows = np.reshape(reals(" ".join(lines[k + 2 : k + each])), (3 if by_points else 4, 3))
+        if by_points:  # the origin, one on +x and one in the plane of +x and +z
+            origin, x, z = rows[0], rows[1] - rows[0], rows[2] - rows[0]
+            rows = np.array([x, np.cross(z, x), np.cross(x, np.cross(z, x)), origin])
+            kind = kind if reference == 0 else -1  # in another system, which is not followed
+        axes = rows[:3] / np.linalg.norm(rows[:3], axis=1, keepdims=True)
+        out.append((label, (kind, axes, rows[3])))
     once(block.file, block.place, "each system", (label for label, _ in out))
     return out
 
 
 def _axes_at(point: Floats, system: System | None) -> Floats:
     """Return the axes (3, 3) of a coordinate system at a point; NaN where they are not known."""
-    kind, (*given, origin) = system or (None, np.zeros((4, 3)))
-    if kind not in (0, 1):  # Cartesian and cylindrical ones
+    if system is None or system[0] not in (0, 1):  # Cartesian and cylindrical ones
         return np.full((3, 3), np.nan)
-    axes = np.array(given) / np.linalg.norm(given, axis=1, keepdims=True)
+    kind, axes, origin = system
     if kind == 0:
-        return np.asarray(axes)
+        return axes
     x, y, _ = axes @ (point - origin)
     radius = float(np.hypot(x, y))
-    c, s = (x / radius, y / radius) if radius > 0 else (1.0, 0.0)
+    c, s = (x / radius, y / radius) if radius != 0 else (1.0, 0.0)
     return np.asarray(np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]]) @ axes)
 
 
@@ -494,8 +504,9 @@ def _assembled(
         values[:, ~(np.nan_to_num(values) != 0).any(axis=0)] = np.nan
     places, axes = np.full((nodes.size, 3), np.nan), np.tile(np.eye(3), (nodes.size, 1, 1))
     known, row_of = [node for node, *_ in points], {n: k for k, n in enumerate(nodes.tolist())}
-    for node, label, point in (each for each in points if each[0] in row_of):
-        places[row_of[node]] = point
+    for node, of_point, label, given in (each for each in points if each[0] in row_of):
+        kind, R, origin = systems.get(of_point, (0, np.eye(3), np.zeros(3)))
+        point = places[row_of[node]] = given @ R + origin if kind == 0 else np.nan * given
         if systems and label != 0:  # else, where no dataset 2420 says more, those of the file
             axes[row_of[node]] = _axes_at(point, systems.get(label))
     for row in rows if known else ():

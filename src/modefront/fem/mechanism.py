@@ -26,7 +26,7 @@ from modefront.fem.elements.solid import SOLIDS
 from modefront.fem.structure import DIRECTIONS
 from modefront.linalg.affine import sparse_rows
 from modefront.linalg.factorisation import factorise
-from modefront.rounding import ACCUMULATED, WRITTEN
+from modefront.rounding import ACCUMULATED, COMPUTED, WRITTEN
 
 STEPS = 4  # of inverse iteration: each leaves of other motions the ratio of shift and eigenvalue
 NAMED = 0.05  # share of a direction in a motion, over the greatest, from which the message names it
@@ -97,20 +97,25 @@ def _incidence(nodes: int, elements: Sequence[Block], exists: Bools) -> Ints:
 def constraint_rows(
     X: Floats, bodies: Bodies, soft: Sequence[Block], following: Sequence[Followers], held: Bools
 ) -> sparse.csr_array:
-    """C (rows, 6 bodies), rows of unit length."""
+    """C (rows, 6 bodies), of unit length; zeros for rows that leave all motions of bodies free."""
     H = _motions(X, bodies, np.arange(len(X)), bodies.home)
     node, body = bodies.shared.T
     other = _motions(X, bodies, node, body)
-    moves = np.arange(6 * len(node)) % 6 < 3
+    translations, one = np.arange(other.shape[0]) % 6 < 3, sparse.eye_array(H.shape[0]).tocsr()
+    fixed = np.flatnonzero(held & (bodies.home >= 0)[:, None])
     rows = [
-        (other - H[(6 * node[:, None] + np.arange(6)).ravel()])[moves],
-        H[np.flatnonzero(held & (bodies.home >= 0)[:, None])],
-        *(_resisted(block, 6 * len(X)) @ H for block in soft),
-        *(H[slave] - weight @ H for slave, weight in following),
+        one[(6 * node[:, None] + np.arange(3)).ravel()],
+        *(weight for _, weight in following),
+        one[fixed],
+        *(_resisted(block, H.shape[0]) for block in soft),
     ]
-    C = sparse.csr_array(sparse.vstack(rows))
-    norm = np.sqrt(np.asarray(C.power(2).sum(1)).ravel())
-    return sparse.diags_array(1 / np.where(norm > 0, norm, 1)).tocsr() @ C
+    same = sparse.vstack([other[translations], *(H[slave] for slave, _ in following)]).tocsr()
+    A = sparse.vstack(rows).tocsr()
+    same.resize((A.shape[0], H.shape[1]))
+    C, size = A @ H - same, abs(A) @ abs(H) + abs(same)
+    norm, most = (np.sqrt(np.asarray(x.power(2).sum(1)).ravel()) for x in (C, size))
+    real = norm > COMPUTED * most  # less is what rounding leaves within a body
+    return sparse.csr_array(sparse.diags_array(real / np.where(real, norm, 1)) @ C)
 
 
 def _motions(X: Floats, bodies: Bodies, node: Ints, body: Ints) -> sparse.csr_array:

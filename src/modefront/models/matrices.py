@@ -313,7 +313,8 @@ def common_size(
     parameters: Sequence[str], tables: Mapping[str, Mapping[str, Matrix]]
 ) -> tuple[int, list[Fault]]:
     """Return the N of most terms, which have to be N x N and named, and what is wrong with them."""
-    faults = []
+    expected = f"names other than '{BASE}', which is the term without parameters"
+    faults = [Fault("", "parameters", expected, f"'{BASE}'")] * (BASE in parameters)
     counts = Counter(A.shape[0] for terms in tables.values() for A in terms.values() if A.ndim)
     size = max(counts, key=lambda n: (counts[n], n), default=0)
     for place, terms in tables.items():

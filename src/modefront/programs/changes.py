@@ -19,6 +19,7 @@ NUMBER = re.compile(r"(?<![\w.])[+-]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d+|[+-]\d
 COMMENTS = ("**", "$", "!", "#")  # how these begin, in one program or another
 
 SUFFIXES = (".inp", ".dat", ".bdf", ".nas", ".mac", ".py", ".tcl")
+FIELDS = (".dat", ".bdf", ".nas")  # of Nastran, whose lines without commas have fields of 8 columns
 CHANGES, KEPT = "changes.json", "deck-"
 """File of the changes in the folder of a study, and beginning of the name of the nominal deck."""
 
@@ -45,20 +46,39 @@ def times(
     digits: int = 9,
 ) -> dict[int, str]:
     """Return the changed lines, by their numbers, with their numbers times the parameters."""
-    factors: dict[int, dict[tuple[int, int], float]] = {}
+    factors: dict[int, dict[tuple[int, int, int], float]] = {}
     for each in changes:
         line = factors.setdefault(each.line, {})
-        line |= {span: line.get(span, 1.0) * theta[each.parameter] for span in each.spans}
+        places = [_field(each, *span) for span in each.spans]
+        line |= {place: line.get(place, 1.0) * theta[each.parameter] for place in places}
     out = {k: lines[k] for k in factors}
     for k, text in out.items():
-        for (first, last), factor in sorted(factors[k].items(), reverse=True):
-            number = f"{fortran(lines[k][first:last]) * factor:.{digits}g}"
-            mantissa, e, exponent = number.partition("e")
-            # Some programs take a number without a decimal point for an integer.
-            point = "" if "." in mantissa else "."
-            text = f"{text[:first]}{mantissa}{point}{e}{exponent}{text[last:]}"
+        for (first, last, width), factor in sorted(factors[k].items(), reverse=True):
+            number = _number(fortran(lines[k][first:last]) * factor, digits, width)
+            text = f"{text[:first]}{number}{text[last:]}"
         out[k] = text
     return out
+
+
+def _field(change: Change, first: int, last: int) -> tuple[int, int, int]:
+    """Return where a number is replaced, and how wide the other one is to be; 0 for any width."""
+    text, width = change.text, 16 if "*" in change.text[:8] else 8
+    begin = 8 + (first - 8) // width * width
+    is_free = "," in text or Path(change.file).suffix.lower() not in FIELDS
+    if is_free or begin < 8 or last > begin + width or text[begin:first].strip():
+        return first, last, 0
+    return begin, min(begin + width, len(text)), width
+
+
+def _number(value: float, digits: int, width: int) -> str:
+    """Return a number; in a field of a ``width`` with as many digits as it has room for."""
+    mantissa, e, exponent = f"{value:.{digits}g}".partition("e")
+    # Some programs take a number without a decimal point for an integer.
+    mantissa += "" if "." in mantissa else "."
+    if not width:
+        return f"{mantissa}{e}{exponent}"
+    out = f"{mantissa}{int(exponent):+}" if e else mantissa
+    return out.rjust(width) if len(out) <= width else _number(value, digits - 1, width)
 
 
 def changes(
@@ -66,24 +86,27 @@ def changes(
 ) -> tuple[list[Change], tuple[float, int] | None]:
     """Return the lines in which a run multiplies numbers of the nominal deck by a factor.
 
-    If all numbers that it changes have another factor, this and a line of it are returned too.
+    None where other numbers change too. If all have another factor, this and a line of it are
+    returned as well.
     """
     deck, lines = _deck(nominal), [deck_text(job).splitlines() for job in (nominal, run)]
     if not deck or len(lines[0]) != len(lines[1]):
         return [], None
-    out, found = list[Change](), dict[float, int]()
+    out, found, whole = list[Change](), dict[float, int](), True
     for number, (old, new) in enumerate(zip(*lines, strict=True), start=1):
         if old == new:
             continue
         spans, factors = _changed(old, new)
-        if spans and all(abs(x / factor - 1) <= 1e-6 for x in factors):
+        of_factor = all(abs(x / factor - 1) <= 1e-6 for x in factors)
+        if spans and of_factor:
             out.append(Change(parameter, deck.name, number, old, tuple(spans)))
         if not old.lstrip().startswith(COMMENTS):
+            whole &= of_factor or not spans
             for x in factors:
                 found.setdefault(float(f"{x:.6g}"), number)
     value, line = next(iter(found.items()), (0.0, 0))
     is_other = len(found) == 1 and value > 0 and abs(value / factor - 1) >= 1e-5
-    return out, (value, line) if is_other else None
+    return out if whole else [], (value, line) if is_other else None
 
 
 def deck_text(job: Path) -> str:
@@ -102,14 +125,17 @@ def text_of(deck: Path) -> str:
 def write_deck(study: Path, theta: Mapping[str, float], folder: Path) -> str:
     """Write the deck of a study with updated values: that which its folder keeps, or the job's own.
 
-    It is left out where one is no parameter, and where it is not there as it was imported: what
-    was not written, and why, is returned, else nothing.
+    It is left out where one is no parameter, or a parameter has no lines, and where it is not there
+    as it was imported: what was not written, and why, is returned, else nothing.
     """
     changes = read_changes(study / CHANGES) if (study / CHANGES).is_file() else []
     decks = [study / f"{beginning}{each.file}" for each in changes[:1] for beginning in (KEPT, "")]
     kept = next((path for path in decks if path.is_file()), None)
-    if kept is None or {each.parameter for each in changes} - set(theta):
+    known = {each.parameter for each in changes}
+    if kept is None or known - set(theta):
         return ""
+    if unknown := [name for name in theta if name not in known]:
+        return f"{changes[0].file}: the numbers that {', '.join(unknown)} multiplies are not known"
     lines = dict(enumerate(text_of(kept).splitlines(keepends=True), start=1))
     for each in changes:
         if lines.get(each.line, "").splitlines() != [each.text]:
@@ -120,8 +146,8 @@ def write_deck(study: Path, theta: Mapping[str, float], folder: Path) -> str:
 
 
 def _deck(path: Path) -> Path | None:
-    stem = path.with_suffix("") if path.suffix else path
-    files = (*(stem.with_name(stem.name + x) for x in SUFFIXES), path)
+    stems = (path, path.with_suffix(""))  # names of jobs may have a point
+    files = (*(stem.with_name(stem.name + x) for stem in stems for x in SUFFIXES), path)
     decks = (x for x in files if x.suffix.lower() in SUFFIXES and x.is_file())
     return next((x for x in decks if x.stat().st_size < 2**26), None)
 

@@ -26,7 +26,7 @@ from modefront.fem.structure import DIRECTIONS
 from modefront.inputs import wrong
 from modefront.models.dofs import write_dofs
 from modefront.models.matrices import MatrixModel, matrices
-from modefront.models.parameters import exponents_of, form_of
+from modefront.models.parameters import BASE, exponents_of, form_of
 from modefront.outputs import output, write_text
 from modefront.programs import PROGRAMS
 from modefront.programs.base import Job, JobOptions, Quantity, read_job, write_mesh
@@ -215,7 +215,8 @@ def _terms_of(
     names: Sequence[str], functions: Functions
 ) -> dict[Quantity, dict[str, Sequence[str]]]:
     """Return the terms of each parameter in either matrix: those declared, or itself."""
-    faults: list[Fault] = []
+    expected = "another name, as this is that of the term without parameters"
+    faults = [Fault("", f"--parameter {BASE}", expected, f"'{BASE}'")] * (BASE in names)
     out: dict[Any, dict[str, Sequence[str]]] = {x: {y: (y,) for y in names} for x in QUANTITIES}
     for name, each in functions.items():
         if name not in names:

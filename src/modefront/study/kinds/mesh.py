@@ -142,22 +142,22 @@ def read_mesh_model(table: opt.Table, parameters: Sequence[str]) -> Model | None
     count, used = len(mesh.nodes), set[str]()
 
     def nodes(member: opt.Table, key: str) -> list[int] | int:
-        """Return nodes: one, or those of a list of nodes and of groups or node sets of the mesh."""
-        out: dict[int, None] = {}
-        before = len(table.faults)
+        """Return one node, or those of a list of nodes, groups and node sets, once but for `to`."""
+        out, before = list[int](), len(table.faults)
         given = member.value(key, NODES)
         for place in [] if given is None else listed(given):
             if isinstance(place, str):
                 used.add(place)
                 with member.noting(key):
-                    out |= dict.fromkeys(mesh.nodes_of(place).tolist())
+                    out += mesh.nodes_of(place).tolist()
             elif place >= count:
                 member.fault(key, from_zero("nodes", count, place), str(place))
             else:
-                out[place] = None
+                out.append(place)
+        out = out if key == "to" else [*dict.fromkeys(out)]
         if key in SINGLE and len(out) != 1 and len(table.faults) == before:
             member.fault(key, "one node", f"{len(out)} nodes")
-        return [*out, 0][0] if key in SINGLE else [*out]
+        return [*out, 0][0] if key in SINGLE else out
 
     on_mesh = replace(NODES, read=nodes)
     members: dict[str, list[Any]] = {}
