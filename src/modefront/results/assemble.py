@@ -18,7 +18,7 @@ from modefront.optim.problem import at_bounds
 from modefront.residuals.problem import UpdatingProblem
 from modefront.results.findings import Determinations, as_values, findings
 from modefront.results.schema import FORMAT, Values, described
-from modefront.rounding import COMPUTED, TINY
+from modefront.rounding import COMPUTED
 from modefront.uncertainty.inference import CHANCE, Inference, refused
 from modefront.uncertainty.prediction import summary
 from modefront.uncertainty.prior import NoiseModel, prior_widths
@@ -226,8 +226,8 @@ def _std(covariance: Floats, free: Floats) -> Floats:
 
 
 def left_open(free: Floats) -> Bools:
-    """Return the parameters that have a part in directions (p, d)."""
-    return (np.abs(free) > COMPUTED * np.abs(free).max(initial=TINY)).any(axis=1)
+    """Return the parameters that have a part in orthonormal directions (p, d)."""
+    return np.asarray((np.abs(free) > COMPUTED).any(axis=1))
 
 
 def _posterior(front: Front, analysis: FrontAnalysis) -> Values:

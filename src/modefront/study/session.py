@@ -213,7 +213,7 @@ def worked(study: Study, work: Run) -> Dataset:
     gaussian, drawn = analysis.posterior, None
     if noise is not None and inference is not None:
         data = with_intervals(data, noise, inference)
-        gaussian, drawn = inference.gaussian, inference.draws.theta
+        gaussian, drawn = inference.gaussian(problem.upper - problem.lower), inference.draws.theta
     runner = PredictionRunner(problem, study.predictions, seed, work, study.file)
     draws = study.uncertainty.draws
     data = with_predictions(data, runner, study.slack, gaussian, draws, drawn)

@@ -128,13 +128,12 @@ class Inference:
     # with it free; None where none lowers them beyond chance
     unfixed: tuple[str, float, Floats] | None
 
-    @property
-    def gaussian(self) -> Posterior:
-        """The Gaussian with the covariance of the draws."""
-        p = self.draws.theta.shape[1]
-        lam, V = np.linalg.eigh(np.cov(self.draws.theta, rowvar=False).reshape(p, p))
+    def gaussian(self, span: Floats) -> Posterior:
+        """Return the Gaussian with the covariance of the draws, of ranges ``span`` (p,)."""
+        p = span.size
+        lam, V = np.linalg.eigh(np.cov(self.draws.theta / span, rowvar=False).reshape(p, p))
         moved = lam > np.finfo(float).eps * lam.max(initial=0.0)
-        axes = V[:, moved] * np.sqrt(lam[moved])
+        axes = span[:, None] * V[:, moved] * np.sqrt(lam[moved])
         return Posterior(axes, np.zeros(p, dtype=np.bool_), np.zeros((p, 0)))
 
 
