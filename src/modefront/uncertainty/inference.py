@@ -159,6 +159,7 @@ def _fit(noise: NoiseModel, theta: Floats) -> dict[str, Any]:
         "misfit": misfit,
         "nominal_misfit": before,
         "lack_of_fit": lack_of_fit(noise, found),
+        "scatter_share": np.divide(noise.S, found.J, out=np.zeros(found.J.size), where=found.J > 0),
         "likely_mode": found.quantities["paired_mode"],
         **candidates(noise, found),
     }
