@@ -10,6 +10,7 @@ import modefront as mf
 from modefront._typing import Floats
 from modefront.datasets import Array, ArrayDataset
 from modefront.front.point import Kind
+from modefront.reports.page import _noise
 from modefront.results.verdict import _front
 from modefront.uncertainty.inference import CHANCE, _fit, lack_of_fit, most_probable
 from modefront.uncertainty.noise import Uncertainty
@@ -74,6 +75,7 @@ def test_a_compromise_is_one_beside_the_errors_of_all_sets_together(sets: int) -
     own = noise.problem
     far = np.array([noise.over_expected(own.evaluate(x).J) for x in thetas])
     data = {
+        "label": (("point",), ["most-probable", "nbi-1", "nbi-2"]),
         "kind": (("point",), [Kind.MOST_PROBABLE.value, Kind.FRONT.value, Kind.FRONT.value]),
         "error": (("point", "group"), [np.sqrt(problem.evaluate(x).J) for x in thetas]),
         "paired_mode": (("point", "mode"), np.tile(fit["likely_mode"], (3, 1))),
@@ -82,12 +84,18 @@ def test_a_compromise_is_one_beside_the_errors_of_all_sets_together(sets: int) -
         "scatter_share": (("group",), fit["scatter_share"]),
         "group": (("group",), ["frequencies", "shapes"]),
     }
-    (said,) = _front(ArrayDataset({x: Array(y, np.array(z)) for x, (y, z) in data.items()}))
+    arrays = {x: Array(y, np.array(z)) for x, (y, z) in data.items()}
+    results = ArrayDataset(arrays, {"reference": "most-probable"})
+    (said,) = _front(results)
     frequencies, shapes = np.ptp(far[1:], axis=0)
     assert min(frequencies, shapes) > 0.5
     greatest = max(frequencies, shapes)
     (change,) = re.findall(r"of (?:frequencies|shapes) change by ([0-9.]+) times", said)
     assert float(change) == pytest.approx(greatest, rel=0.06)
+    near = best * 1.001
+    slope = np.sqrt(problem.evaluate(near).J) - arrays["error"].values[0]
+    slope /= noise.over_expected(own.evaluate(near).J) - far[0]
+    assert _noise(results)[0] == pytest.approx(slope[0], rel=0.1)
 
 
 def test_of_a_model_that_lacks_something_nothing_is_determined() -> None:
