@@ -8,7 +8,10 @@ import pytest
 import modefront as mf
 from modefront.errors import UnfinishedError
 from modefront.optim.sqp import given
+from modefront.plots.quantities import parameter_std
 from modefront.uncertainty.points import Role, SolvedPoint, redraw, solve_again
+
+OPEN = mf.Identifiability(models=0)
 
 
 def data_of(sets: int) -> mf.ModalData:
@@ -80,3 +83,30 @@ def test_a_level_that_does_not_hold_its_objective_is_solved_again_without_a_warn
     point = SolvedPoint("end", replace(start, weights=np.array([1.0, 0.0])), role)
     solved = solve_again(problem, [point], np.ones(2), "std", rng=np.random.default_rng(0))
     assert solved["end"].converged
+
+
+@pytest.mark.slow(3)
+@pytest.mark.usefixtures("short_chains")
+def test_a_model_that_priors_hold_is_not_solved_again_without_them() -> None:
+    """Its weights alone would let it go to where the data want it."""
+    names, prior = ("a", "b"), mf.Prior("normal", 0.01)
+    model = mf.chain(names, [1.0] * 2, [100.0] * 2, stiffness_parameters=names)
+    modes = model.modes(np.array([1.0, 1.2]), 2, derivatives=False)
+    f, phi = modes.frequency, modes.phi.T + np.diag([0.02, 0.03])
+    data = mf.modal_data(f, phi, model.sensors, frequency_std=0.005 * f)
+    groups = mf.Group("f", frequency="all"), mf.Group("s", shape="all")
+    search, known = mf.Search(doubt=0.5), list[list[bool]]()
+    for expected in (None, prior):
+        of = [mf.Parameter(x, 1.0, (0.5, 2.0), prior=expected) for x in names]
+        problem = mf.updating_problem(model, data, groups, parameters=of)
+        again = mf.Uncertainty(bootstrap=2)
+        found = mf.solve(
+            problem, points=3, search=search, uncertainty=again, identifiability=OPEN
+        ).dataset
+        best = found["label"].values == "most-probable"
+        every = found["theta_std"].values, found["bootstrap_theta_std"].values
+        known.append([bool(np.isfinite(x[best]).all()) for x in every])
+        assert all(np.isfinite(x[~best][:3]).all() for x in every)
+        reference = parameter_std(found)[best][0]
+    assert known == [[True, True], [False, False]]
+    assert reference == pytest.approx(found["posterior_std"].values)

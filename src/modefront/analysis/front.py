@@ -16,7 +16,7 @@ from modefront.front.dominance import distinct_points
 from modefront.front.front import Front, best_minima
 from modefront.front.methods import METHODS
 from modefront.front.options import Pareto
-from modefront.front.point import WEIGHTED, Kind, Point, of_kind
+from modefront.front.point import WEIGHTED, Kind, Point, label, of_kind
 from modefront.front.proposers.polish import Polish
 from modefront.front.search import State
 from modefront.front.simplex import Payoff, default_points, lattice, payoff
@@ -164,6 +164,8 @@ def analyse_front(
     solved = [SolvedPoint(reference.label, reference.solution, Role("optimal"))]
     if sizes is not None:
         solved = _solved_points(problem, front, part, pareto, identifiability.flat)
+        if any(problem.priors):  # these hold the most probable model, too, and no weights do so
+            solved = [x for x in solved if x.label != label(Kind.MOST_PROBABLE)]
     own = {x.label: x for x in solved if x.role.kind != "end"}
     tasks = [
         Task(("second-derivatives", text), _local, (problem, x, sizes, source))
