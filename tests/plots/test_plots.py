@@ -80,6 +80,14 @@ def test_the_front_of_two_groups_is_drawn_in_the_space_of_errors(two: Results) -
     assert two.plot.front(log=True).axes[0].get_xscale() == "log"
 
 
+def test_a_nominal_model_that_cannot_be_solved_takes_no_other_one_away(two: Results) -> None:
+    error = two.dataset["error"].copy()
+    error[two.dataset["kind"].values == "nominal"] = np.inf
+    (axes,) = Plots(two.dataset.assign(error=error)).front(log=True).axes
+    (path, *_), front = axes.lines, two.dataset["kind"].values == "front"
+    assert np.asarray(path.get_ydata()).max() == error.values[front, 1].max()
+
+
 def test_lattice_points_of_three_groups_are_not_joined(three: Results) -> None:
     figure = three.plot.front()
     pairs = [axes for axes in figure.axes if axes.get_xlabel().startswith("error")]

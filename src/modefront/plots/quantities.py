@@ -30,7 +30,7 @@ def front(data: Dataset, *, log: bool = False) -> canvas.Picture:
     """Return the front in the space of errors; axes are logarithmic if ``log``."""
     error, groups = data["error"].values, data.sizes["group"]
     if log:
-        error = np.maximum(error, 1e-4 * np.nanmax(error))
+        error = np.maximum(error, 1e-4 * np.max(error, where=np.isfinite(error), initial=0.0))
     if groups == 1:
         return _one(data, error)
     figure = _two(data, error) if groups == 2 else _many(data, error)
