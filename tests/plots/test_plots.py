@@ -111,8 +111,9 @@ def test_standard_deviations_are_drawn_as_bars(two: Results) -> None:
     figure = two.plot.parameters()
     assert [axes.get_title("left") for axes in figure.axes] == ["k1", r"\$k_2\$"]
     ends = [np.ptp(line.get_ydata()) for line in figure.axes[0].lines if line.get_marker() == "_"]
-    expected = 2 * two["theta_std"].values[two["kind"].values != "edge", 0]
-    np.testing.assert_allclose(sorted(ends), sorted(expected[np.isfinite(expected)]))
+    std = two["theta_std"].values[two["kind"].values != "edge", 0]
+    expected = 2 * np.append(std[np.isfinite(std)], two["posterior_std"].values[0])
+    np.testing.assert_allclose(sorted(ends), sorted(expected))
 
 
 def test_the_ranges_of_predictions_are_over_the_reference(two: Results) -> None:

@@ -16,7 +16,7 @@ from modefront.front.dominance import distinct_points
 from modefront.front.front import Front, best_minima
 from modefront.front.methods import METHODS
 from modefront.front.options import Pareto
-from modefront.front.point import WEIGHTED, Kind, Point, label, of_kind
+from modefront.front.point import Kind, Point, of_kind
 from modefront.front.proposers.polish import Polish
 from modefront.front.search import State
 from modefront.front.simplex import Payoff, default_points, lattice, payoff
@@ -164,8 +164,6 @@ def analyse_front(
     solved = [SolvedPoint(reference.label, reference.solution, Role("optimal"))]
     if sizes is not None:
         solved = _solved_points(problem, front, part, pareto, identifiability.flat)
-        if any(problem.priors):  # these hold the most probable model, too, and no weights do so
-            solved = [x for x in solved if x.label != label(Kind.MOST_PROBABLE)]
     own = {x.label: x for x in solved if x.role.kind != "end"}
     tasks = [
         Task(("second-derivatives", text), _local, (problem, x, sizes, source))
@@ -231,7 +229,8 @@ def _solved_points(
     """Return the points with what each of them solves, as far as that is a programme.
 
     Points of weights follow from their weights, points of normal-boundary intersection from their
-    edges; those of the identifiable part solve bounds.
+    edges; those of the identifiable part solve bounds. The most probable model is none of
+    them: its residuals have other units, and priors hold it, too. It has its posterior.
     """
     edges, out = of_kind(front.points, Kind.EDGE), list[SolvedPoint]()
     for i, (point, edge) in enumerate(zip(edges, front.edges, strict=True)):
@@ -256,7 +255,7 @@ def _solved_points(
         role, kind = None, point.kind
         if kind is Kind.OPTIMAL:
             role = Role("optimal")
-        elif kind in WEIGHTED or (kind is Kind.FRONT and along == "weights"):
+        elif kind in (Kind.GIVEN, Kind.EQUAL) or (kind is Kind.FRONT and along == "weights"):
             role = Role("weights")
         elif kind is Kind.FRONT and along == "boundary":
             role = between(point.solution, whole, front.target)
