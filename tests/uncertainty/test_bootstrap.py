@@ -93,9 +93,9 @@ def test_the_most_probable_model_has_its_posterior_and_is_not_solved_again_by_we
     Solved again with weights of groups, it left for where both count the same.
     """
     model = mf.chain(["k"], [1.0] * 3, [100.0] * 3, stiffness_parameters=["k"] * 3)
-    f = model.modes(np.ones(1), 3, derivatives=False).frequency * [1.03, 0.97, 0.99]
+    f = model.modes(np.ones(1), 3, derivatives=False).frequency * [1.03, 0.97, 1.02]
     unknown = np.full((3, 3), np.nan)
-    data = mf.modal_data(f, unknown, model.sensors, frequency_std=f * [0.001, 0.03, 0.03])
+    data = mf.modal_data(f, unknown, model.sensors, frequency_std=f * [0.001, 0.03, 0.001])
     groups = mf.Group("two", frequency=[1, 2]), mf.Group("one", frequency=[3])
     problem = mf.updating_problem(model, data, groups, {"k": (0.3, 3.0)}, {"k": 1.0})
     again, search = mf.Uncertainty(bootstrap=2), mf.Search(doubt=0.5)
@@ -105,4 +105,6 @@ def test_the_most_probable_model_has_its_posterior_and_is_not_solved_again_by_we
         assert np.isnan(known[best]).all()
         assert np.isfinite(known[~best][:3]).all()
     assert parameter_std(found.data)[best] == pytest.approx(found["posterior_std"].values[None])
+    change = np.ptp(found["front_misfit"].values[found["kind"].values == "front"], axis=0)
+    assert f"change by {change.max():.2g} times those expected" in " ".join(found.verdict)
     assert "no-scatter" not in [x.kind for x in found.findings]

@@ -12,7 +12,7 @@ from modefront.datasets import Array, ArrayDataset
 from modefront.front.point import Kind
 from modefront.reports.page import _noise
 from modefront.results.verdict import _front
-from modefront.uncertainty.inference import CHANCE, _fit, lack_of_fit, most_probable
+from modefront.uncertainty.inference import CHANCE, _fit, _misfits, lack_of_fit, most_probable
 from modefront.uncertainty.noise import Uncertainty
 from modefront.uncertainty.prior import NoisePrior
 from modefront.work.task import IMMEDIATE
@@ -73,7 +73,7 @@ def test_a_compromise_is_one_beside_the_errors_of_all_sets_together(sets: int) -
     fit = _fit(noise, best)
     thetas = best * [[1, 1], [0.98, 1], [1, 1.2]]
     own = noise.problem
-    far = np.array([noise.over_expected(own.evaluate(x).J) for x in thetas])
+    far = _misfits(noise, list(thetas))
     data = {
         "label": (("point",), ["most-probable", "nbi-1", "nbi-2"]),
         "kind": (("point",), [Kind.MOST_PROBABLE.value, Kind.FRONT.value, Kind.FRONT.value]),
@@ -81,6 +81,7 @@ def test_a_compromise_is_one_beside_the_errors_of_all_sets_together(sets: int) -
         "paired_mode": (("point", "mode"), np.tile(fit["likely_mode"], (3, 1))),
         "likely_mode": (("mode",), fit["likely_mode"]),
         "misfit": (("group",), fit["misfit"]),
+        "front_misfit": (("point", "group"), far),
         "scatter_share": (("group",), fit["scatter_share"]),
         "group": (("group",), ["frequencies", "shapes"]),
     }

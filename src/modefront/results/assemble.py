@@ -12,7 +12,7 @@ from modefront.front.dominance import nondominated, undominated
 from modefront.front.front import Front
 from modefront.front.gaps import branch_numbers
 from modefront.front.methods import METHODS
-from modefront.front.point import WEIGHTED, Kind, label, of_kind
+from modefront.front.point import WEIGHTED, Kind, front_points, label, of_kind
 from modefront.identifiability.combinations import cosines, determination, index
 from modefront.optim.problem import at_bounds
 from modefront.residuals.problem import UpdatingProblem
@@ -293,8 +293,11 @@ def with_intervals(data: ArrayDataset, noise: NoiseModel, inference: Inference) 
     share = (interval[:, 2] - interval[:, 0]) / widths
     known = (share < DETERMINED) & ~held & (settled and not (fit["lack_of_fit"] < CHANCE).any())
     place = np.where(known, 0, np.where(share > OPEN, 2, 1))
+    along = np.full(data["error"].values.shape, np.nan)
+    along[front_points(data)] = inference.along
     values = {
         **fit,
+        "front_misfit": along,
         "sample_theta": draws.theta,
         "interval": interval,
         "trust": np.array(TRUST)[place],

@@ -152,12 +152,7 @@ def _front(data: Dataset) -> Iterator[str]:
     along = front_points(data)
     if along.size < 2 or any(True for _ in _pairs(data)):
         return
-    best, misfit = _row(data, Kind.MOST_PROBABLE)["error"].values, data["misfit"].values
-    explained = best**2 * (1 - data["scatter_share"].values)
-    error = np.sqrt(np.maximum(data["error"].values[along] ** 2 - (best**2 - explained), 0.0))
-    with np.errstate(divide="ignore", invalid="ignore"):
-        expected = np.where(misfit > 0, np.sqrt(explained) / misfit, np.inf)
-    change = np.ptp(error, axis=0) / expected
+    change = np.ptp(data["front_misfit"].values[along], axis=0)
     agree = (change < SMALL).any()
     i = int(np.argmin(change) if agree else np.argmax(change))
     kind = "agree" if agree else "compromise"

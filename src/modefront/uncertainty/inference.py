@@ -28,6 +28,7 @@ from modefront.uncertainty.prior import NoiseModel
 from modefront.uncertainty.sampling import Draws, draw_models
 from modefront.uncertainty.scatter import Posterior
 from modefront.work.codec import record
+from modefront.work.store import hash_text
 from modefront.work.task import Executor, Task
 
 CHANCE = 0.01  # probability that a fixed parameter, bound or model is blamed wrongly
@@ -127,6 +128,7 @@ class Inference:
     # name and value of the fixed parameter that is wrong, and the errors (n,) over those expected
     # with it free; None where none lowers them beyond chance
     unfixed: tuple[str, float, Floats] | None
+    along: Floats  # (models, n) errors of the models of the front over those expected
 
     def gaussian(self, span: Floats) -> Posterior:
         """Return the Gaussian with the covariance of the draws, of ranges ``span`` (p,)."""
@@ -137,17 +139,34 @@ class Inference:
         return Posterior(axes, np.zeros(p, dtype=np.bool_), np.zeros((p, 0)))
 
 
+# 6 arguments: the posterior and the models that are known, how many are drawn, and how.
 def infer(
-    noise: NoiseModel, maxima: Sequence[Floats], count: int, seed: int, work: Executor
+    noise: NoiseModel,
+    maxima: Sequence[Floats],
+    front: Sequence[Floats],
+    count: int,
+    seed: int,
+    work: Executor,
 ) -> Inference:
-    """Return what follows from the posterior with maxima (p,), the greatest first, by draws."""
+    """Return what follows from the posterior with maxima (p,), the greatest first, by draws.
+
+    The models (p,) of the ``front`` are compared with what is expected, too.
+    """
     theta = maxima[0]
+    mark = hash_text(f"{[x.tolist() for x in front]}")[:8]
+    (along,) = work.run([Task(("most-probable", "front", mark), _misfits, (noise, front))])
     (fit,) = work.run([Task(("most-probable", "fit"), _fit, (noise, theta))])
     (free,) = work.run([Task(("most-probable", "freed"), freed, (noise, theta))])
     # One round where the model cannot be used.
     rounds = 1 if np.any(refused(fit["misfit"], fit["nominal_misfit"])) else None
     draws = draw_models(noise, maxima, count, seed, work, rounds)
-    return Inference(draws, fit, free, unfixed(noise, theta, fit["misfit"], work))
+    return Inference(draws, fit, free, unfixed(noise, theta, fit["misfit"], work), along)
+
+
+def _misfits(noise: NoiseModel, thetas: Sequence[Floats]) -> Floats:
+    """Return the errors (models, n) of models (p,) over those expected."""
+    found = [noise.problem.evaluate(theta, derivatives=False).J for theta in thetas]
+    return np.array([noise.over_expected(J) for J in found]).reshape(-1, noise.a.size)
 
 
 def _fit(noise: NoiseModel, theta: Floats) -> dict[str, Any]:
