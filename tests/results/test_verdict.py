@@ -11,12 +11,13 @@ from typing import Any
 import numpy as np
 import pytest
 
+from modefront.datasets import Array, ArrayDataset
 from modefront.findings import record
 from modefront.findings.record import VERDICT, meaning_of
 from modefront.front.point import Kind
 from modefront.results.assemble import intervals
 from modefront.results.findings import _scatter
-from modefront.results.verdict import closed
+from modefront.results.verdict import _front, closed
 from modefront.uncertainty.scatter import LinearisationWarning
 
 DOCS = Path(__file__).parents[2] / "docs"
@@ -74,6 +75,28 @@ def test_what_to_fix_is_what_check_names_and_never_all() -> None:
     assert closed(names, draws, nothing, ["k3"]) == [f"k3{fixed}"]
     draws[:, 0] = -draws[:, 2]
     assert closed(names, draws, nothing, ["k3"]) == ['k3: tie = "k1"']
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ([0.1, 6.0], "of a change by 0.1 of those"),
+        ([5.0, 6.0, 0.1], "of b change by 6 times"),
+        ([0.2, 6.0, 0.1], "of a change by 0.2 of those"),
+        ([0.3], "of a change by 0.3 of those"),
+    ],
+)
+def test_a_front_is_a_compromise_where_two_groups_change(change: list[float], said: str) -> None:
+    errors = np.array([np.full(len(change), np.nan), 0 * np.array(change), change])
+    values = {
+        "kind": (("point",), np.array(["most-probable", "front", "front"])),
+        "group": (("group",), np.array(["a", "b", "c"][: len(change)])),
+        "front_misfit": (("point", "group"), errors),
+        "likely_mode": (("mode",), np.ones(1)),
+        "paired_mode": (("point", "mode"), np.ones((3, 1))),
+    }
+    (found,) = _front(ArrayDataset({name: Array(*x) for name, x in values.items()}))
+    assert said in found
 
 
 def test_points_that_tables_leave_out_are_not_named_as_approximate() -> None:

@@ -148,14 +148,14 @@ def _interval(value: float, low: float, high: float) -> str:
 
 
 def _front(data: Dataset) -> Iterator[str]:
-    """Yield whether the front is a compromise, or its errors change less than noise."""
+    """Yield whether the front is a compromise, or at most one group changes by more than noise."""
     along = front_points(data)
     if along.size < 2 or any(True for _ in _pairs(data)):
         return
     change = np.ptp(data["front_misfit"].values[along], axis=0)
-    agree = (change < SMALL).any()
-    i = int(np.argmin(change) if agree else np.argmax(change))
-    kind = "agree" if agree else "compromise"
+    # Where one group alone changes, its best model gives nothing up.
+    *_, second, first = np.argsort(change, kind="stable")[[0, *range(change.size)]]
+    kind, i = ("agree", second) if change[second] < SMALL else ("compromise", first)
     yield _say(kind, group=data["group"].values[i], change=change[i])
 
 
