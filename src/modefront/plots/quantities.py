@@ -337,8 +337,7 @@ def predictions(data: Dataset) -> canvas.Picture:
             continue
         std = np.nan if of.std is None else of.std
         std = np.exp(std) if of.variable.logarithmic else 1 + abs(std / value)
-        ends = np.array([known.min(), known.max()])
-        axes.plot(ends / value, [y, y], **bar)
+        axes.plot(of.extent[:2] / value, [y, y], **bar)
         axes.plot(known / value, [y] * known.size, "|", color=canvas.COLOURS[0], ms=5)
         axes.plot([1 / std, std], [y, y], "-|", color=canvas.COLOURS[1], lw=1.2, ms=8)
         axes.plot(1, y, "*", **star)
