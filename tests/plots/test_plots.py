@@ -129,9 +129,13 @@ def test_the_ranges_of_predictions_are_over_the_reference(two: Results) -> None:
     assert list(np.asarray(widths[0])) == pytest.approx([ratio.min(), ratio.max()])
     wide = two["frf_peak_range"].copy()
     wide[:2, 0] = [0.5 * peak[best], 3 * peak[best]]  # of equivalent models, beyond the points
-    (axes,) = Plots(two.dataset.assign(frf_peak_range=wide)).predictions().axes
-    first = next(line.get_xdata() for line in axes.lines if line.get_linewidth() == 5)
-    assert list(np.asarray(first)) == pytest.approx([0.5, 3])
+    std = two["posterior_frf_peak_std"].copy()
+    std[0] = 0.6 * peak[best]
+    changed = two.dataset.assign(frf_peak_range=wide, posterior_frf_peak_std=std)
+    (axes,) = Plots(changed).predictions().axes
+    for width, ends in ((5, [0.5, 3]), (1.2, [0.4, 1.6])):
+        first = next(line.get_xdata() for line in axes.lines if line.get_linewidth() == width)
+        assert list(np.asarray(first)) == pytest.approx(ends)
 
 
 def test_draws_of_the_posterior_are_drawn_in_pairs(two: Results, three: Results) -> None:

@@ -336,10 +336,11 @@ def predictions(data: Dataset) -> canvas.Picture:
         if not known.size or not value or np.isnan(value):
             continue
         std = np.nan if of.std is None else of.std
-        std = np.exp(std) if of.variable.logarithmic else 1 + abs(std / value)
+        sides = np.array([-std, std])
+        ticks = np.exp(sides) if of.variable.logarithmic else 1 + sides / value
         axes.plot(of.extent[:2] / value, [y, y], **bar)
         axes.plot(known / value, [y] * known.size, "|", color=canvas.COLOURS[0], ms=5)
-        axes.plot([1 / std, std], [y, y], "-|", color=canvas.COLOURS[1], lw=1.2, ms=8)
+        axes.plot(ticks, [y, y], "-|", color=canvas.COLOURS[1], lw=1.2, ms=8)
         axes.plot(1, y, "*", **star)
         axes.plot(of.values[nominal] / value, [y] * nominal.size, "X", color="0.4", ms=6)
     axes.set_yticks(range(len(rows)), labels)
