@@ -15,9 +15,11 @@ from modefront.datasets import Array, ArrayDataset
 from modefront.findings import record
 from modefront.findings.record import VERDICT, meaning_of
 from modefront.front.point import Kind
-from modefront.results.assemble import intervals
+from modefront.results.assemble import intervals, with_intervals
 from modefront.results.findings import _scatter
 from modefront.results.verdict import _front, closed
+from modefront.uncertainty.inference import Inference
+from modefront.uncertainty.sampling import Draws
 from modefront.uncertainty.scatter import LinearisationWarning
 
 DOCS = Path(__file__).parents[2] / "docs"
@@ -66,6 +68,28 @@ def test_an_interval_has_nine_of_ten_draws_and_the_bound_that_is_most_probable()
     assert inside.mean(axis=0) == pytest.approx([0.9] * 3, abs=1e-3)
     assert found[0, 0] == 0 == found[1, 2]
     assert found[2, 0] == pytest.approx(-np.log(0.95), rel=0.2), "equal tails"
+
+
+def test_a_bound_holds_a_parameter_where_no_search_beyond_it_converges() -> None:
+    lower, upper = np.zeros(2), np.ones(2)
+    of: Any = {"lower": lower, "upper": upper, "start": upper / 2, "priors": (None, None)}
+    noise: Any = SimpleNamespace(problem=SimpleNamespace(objectives=(), **of), assumed="")
+    draws = np.clip([0.5, 1.0] + 0.02 * np.random.default_rng(0).normal(size=(200, 2)), 0, 1)
+    none, fit = np.zeros((200, 0)), {"misfit": np.ones(1), "nominal_misfit": np.ones(1)}
+    fit |= {"lack_of_fit": np.full(1, np.nan)}
+    inference = Inference(Draws(draws, none, none), fit, None, None, np.zeros((0, 1)))
+    values = {
+        "kind": (("point",), np.array(["most-probable"])),
+        "theta": (("point", "parameter"), np.array([[0.5, 1.0]])),
+        "at_bound": (("point", "parameter"), np.array([[0, 1]])),
+        "error": (("point", "group"), np.ones((1, 1))),
+        "bounds": (("parameter", "bound"), np.column_stack([lower, upper])),
+    }
+    data = ArrayDataset({name: Array(*x) for name, x in values.items()})
+    assert with_intervals(data, noise, inference)["trust"].values.tolist() == [
+        "determined",
+        "partly",
+    ]
 
 
 def test_what_to_fix_is_what_check_names_and_never_all() -> None:

@@ -288,7 +288,7 @@ def with_intervals(data: ArrayDataset, noise: NoiseModel, inference: Inference) 
     settled = draws.settled and not np.any(refused(fit["misfit"], fit["nominal_misfit"]))
     best = data["kind"].values == Kind.MOST_PROBABLE.value
     (side,), (theta,) = (data[name].values[best] for name in ("at_bound", "theta"))
-    held = side * (freed.theta - theta) > 0 if freed else np.zeros(side.size, dtype=np.bool_)
+    held = side * (freed.theta - theta) > 0 if freed else side != 0
     interval = intervals(draws.theta, side, data["bounds"].values)
     share = (interval[:, 2] - interval[:, 0]) / widths
     known = (share < DETERMINED) & ~held & (settled and not (fit["lack_of_fit"] < CHANCE).any())
