@@ -21,6 +21,7 @@ from modefront.identifiability.combinations import (
     index,
     optimal_weights,
     pairs,
+    sensitivities,
     sparse_basis,
 )
 from modefront.identifiability.scale import Scale
@@ -144,3 +145,19 @@ def test_the_collinearity_index_of_known_angles() -> None:
     parallel = np.ones((2, 2))
     assert index(parallel) == np.inf
     assert cosines(np.diag([1.0, 0.0])).tolist() == [[1.0, 0.0], [0.0, 0.0]]
+
+
+def test_a_percent_of_a_negative_parameter_is_one_as_of_a_positive_one() -> None:
+    K, found = np.array([[2.0, -1.0], [-1.0, 1.0]]), list[mf.UpdatingProblem]()
+    for sign in (1.0, -1.0):
+        model = mf.matrices(
+            ["t"], {"base": K, "t": sign * K}, {"base": np.eye(2)}, {"a": 0, "b": 1}
+        )
+        f = model.modes(np.array([sign]), 2, derivatives=False).frequency
+        data = mf.modal_data(f, np.full((2, 2), np.nan), model.sensors)
+        low, high = sorted((0.9 * sign, 1.1 * sign))
+        groups = [mf.Group("f", frequency="all")]
+        found.append(mf.updating_problem(model, data, groups, {"t": (low, high)}, {"t": sign}))
+    positive, negative = (sensitivities(x).frequency for x in found)
+    assert positive == pytest.approx(np.full((1, 2), 0.25))  # f goes with the root of 1 + t
+    assert negative == pytest.approx(positive)

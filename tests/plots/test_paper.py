@@ -65,6 +65,13 @@ def test_figures_show_all_studies(building: Results, tmp_path: Path) -> None:
     assert [path.name for path in paths] == [f"{name}.svg" for name in drawn]
 
 
+def test_modes_go_by_their_numbers_where_studies_measured_others(building: Results) -> None:
+    data = building.dataset
+    drawn = dict(figures([("all", data), ("others", data.isel(mode=[1, 2]))]))
+    count = [len(axes.lines) for axes in drawn["figure-5"].axes]
+    assert count[0] < count[1] == count[2], "nothing of the second study at mode 1"
+
+
 def test_long_names_of_studies_are_not_cut(building: Results) -> None:
     names = [f"three-story C{k}, beams and plates M{k}_FE" for k in range(4)]
     for name, drawn in figures([(each, building.dataset) for each in names]):

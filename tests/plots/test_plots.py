@@ -80,6 +80,14 @@ def test_the_front_of_two_groups_is_drawn_in_the_space_of_errors(two: Results) -
     assert two.plot.front(log=True).axes[0].get_xscale() == "log"
 
 
+def test_a_nominal_model_that_cannot_be_solved_takes_no_other_one_away(two: Results) -> None:
+    error = two.dataset["error"].copy()
+    error[two.dataset["kind"].values == "nominal"] = np.inf
+    (axes,) = Plots(two.dataset.assign(error=error)).front(log=True).axes
+    (path, *_), front = axes.lines, two.dataset["kind"].values == "front"
+    assert np.asarray(path.get_ydata()).max() == error.values[front, 1].max()
+
+
 def test_lattice_points_of_three_groups_are_not_joined(three: Results) -> None:
     figure = three.plot.front()
     pairs = [axes for axes in figure.axes if axes.get_xlabel().startswith("error")]
@@ -103,8 +111,9 @@ def test_standard_deviations_are_drawn_as_bars(two: Results) -> None:
     figure = two.plot.parameters()
     assert [axes.get_title("left") for axes in figure.axes] == ["k1", r"\$k_2\$"]
     ends = [np.ptp(line.get_ydata()) for line in figure.axes[0].lines if line.get_marker() == "_"]
-    expected = 2 * two["theta_std"].values[two["kind"].values != "edge", 0]
-    np.testing.assert_allclose(sorted(ends), sorted(expected[np.isfinite(expected)]))
+    std = two["theta_std"].values[two["kind"].values != "edge", 0]
+    expected = 2 * np.append(std[np.isfinite(std)], two["posterior_std"].values[0])
+    np.testing.assert_allclose(sorted(ends), sorted(expected))
 
 
 def test_the_ranges_of_predictions_are_over_the_reference(two: Results) -> None:
@@ -118,6 +127,15 @@ def test_the_ranges_of_predictions_are_over_the_reference(two: Results) -> None:
     best = two["label"].values.tolist().index(two.attrs["reference"])
     ratio = (peak / peak[best])[two["pareto"].values]
     assert list(np.asarray(widths[0])) == pytest.approx([ratio.min(), ratio.max()])
+    wide = two["frf_peak_range"].copy()
+    wide[:2, 0] = [0.5 * peak[best], 3 * peak[best]]  # of equivalent models, beyond the points
+    std = two["posterior_frf_peak_std"].copy()
+    std[0] = 0.6 * peak[best]
+    changed = two.dataset.assign(frf_peak_range=wide, posterior_frf_peak_std=std)
+    (axes,) = Plots(changed).predictions().axes
+    for width, ends in ((5, [0.5, 3]), (1.2, [0.4, 1.6])):
+        first = next(line.get_xdata() for line in axes.lines if line.get_linewidth() == width)
+        assert list(np.asarray(first)) == pytest.approx(ends)
 
 
 def test_draws_of_the_posterior_are_drawn_in_pairs(two: Results, three: Results) -> None:

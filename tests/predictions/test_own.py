@@ -23,6 +23,7 @@ from modefront.options import check_fields, text, whole
 from modefront.predictions import ResultVariable, Setting
 from modefront.predictions.base import kinds_in
 from modefront.reports.page import payload, topics
+from modefront.results.compare import _models, _spreads
 
 
 @dataclass(frozen=True)
@@ -109,6 +110,15 @@ def test_results_hold_its_values_and_their_meaning(data: xr.Dataset) -> None:
     share = data["posterior_frequency_std"].values[0] / data["frequency"].values[best, 0]
     std = data["posterior_period_length_std"].values[0]
     assert std == pytest.approx(share * T.values[best, 0], rel=0.01)
+
+
+def test_studies_are_compared_by_ranges_of_equivalent_models_too(data: xr.Dataset) -> None:
+    wide = data["period_length_range"].copy()
+    wide[:2, 0] = [0.01, 9.0]
+    models, chosen, _ = _models(data.assign(period_length_range=wide))
+    (spread,) = _spreads("period_length", "", models, chosen)
+    assert (spread.least, spread.greatest) == (0.01, 9.0)
+    assert spread.reference == chosen["period_length"].values[0, 0]
 
 
 def test_the_study_file_checks_it(tmp_path: Path) -> None:

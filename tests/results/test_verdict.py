@@ -11,12 +11,15 @@ from typing import Any
 import numpy as np
 import pytest
 
+from modefront.datasets import Array, ArrayDataset
 from modefront.findings import record
 from modefront.findings.record import VERDICT, meaning_of
 from modefront.front.point import Kind
-from modefront.results.assemble import intervals
+from modefront.results.assemble import intervals, with_intervals
 from modefront.results.findings import _scatter
-from modefront.results.verdict import closed
+from modefront.results.verdict import _front, closed
+from modefront.uncertainty.inference import Inference
+from modefront.uncertainty.sampling import Draws
 from modefront.uncertainty.scatter import LinearisationWarning
 
 DOCS = Path(__file__).parents[2] / "docs"
@@ -67,6 +70,28 @@ def test_an_interval_has_nine_of_ten_draws_and_the_bound_that_is_most_probable()
     assert found[2, 0] == pytest.approx(-np.log(0.95), rel=0.2), "equal tails"
 
 
+def test_a_bound_holds_a_parameter_where_no_search_beyond_it_converges() -> None:
+    lower, upper = np.zeros(2), np.ones(2)
+    of: Any = {"lower": lower, "upper": upper, "start": upper / 2, "priors": (None, None)}
+    noise: Any = SimpleNamespace(problem=SimpleNamespace(objectives=(), **of), assumed="")
+    draws = np.clip([0.5, 1.0] + 0.02 * np.random.default_rng(0).normal(size=(200, 2)), 0, 1)
+    none, fit = np.zeros((200, 0)), {"misfit": np.ones(1), "nominal_misfit": np.ones(1)}
+    fit |= {"lack_of_fit": np.full(1, np.nan)}
+    inference = Inference(Draws(draws, none, none), fit, None, None, np.zeros((0, 1)))
+    values = {
+        "kind": (("point",), np.array(["most-probable"])),
+        "theta": (("point", "parameter"), np.array([[0.5, 1.0]])),
+        "at_bound": (("point", "parameter"), np.array([[0, 1]])),
+        "error": (("point", "group"), np.ones((1, 1))),
+        "bounds": (("parameter", "bound"), np.column_stack([lower, upper])),
+    }
+    data = ArrayDataset({name: Array(*x) for name, x in values.items()})
+    assert with_intervals(data, noise, inference)["trust"].values.tolist() == [
+        "determined",
+        "partly",
+    ]
+
+
 def test_what_to_fix_is_what_check_names_and_never_all() -> None:
     names, draws = ["k1", "k2", "k3"], np.random.default_rng(0).normal(size=(200, 3))
     nothing, fixed = ["not determined"] * 3, ": fixed = true"
@@ -74,6 +99,28 @@ def test_what_to_fix_is_what_check_names_and_never_all() -> None:
     assert closed(names, draws, nothing, ["k3"]) == [f"k3{fixed}"]
     draws[:, 0] = -draws[:, 2]
     assert closed(names, draws, nothing, ["k3"]) == ['k3: tie = "k1"']
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ([0.1, 6.0], "of a change by 0.1 of those"),
+        ([5.0, 6.0, 0.1], "of b change by 6 times"),
+        ([0.2, 6.0, 0.1], "of a change by 0.2 of those"),
+        ([0.3], "of a change by 0.3 of those"),
+    ],
+)
+def test_a_front_is_a_compromise_where_two_groups_change(change: list[float], said: str) -> None:
+    errors = np.array([np.full(len(change), np.nan), 0 * np.array(change), change])
+    values = {
+        "kind": (("point",), np.array(["most-probable", "front", "front"])),
+        "group": (("group",), np.array(["a", "b", "c"][: len(change)])),
+        "front_misfit": (("point", "group"), errors),
+        "likely_mode": (("mode",), np.ones(1)),
+        "paired_mode": (("point", "mode"), np.ones((3, 1))),
+    }
+    (found,) = _front(ArrayDataset({name: Array(*x) for name, x in values.items()}))
+    assert said in found
 
 
 def test_points_that_tables_leave_out_are_not_named_as_approximate() -> None:

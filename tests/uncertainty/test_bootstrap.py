@@ -8,7 +8,10 @@ import pytest
 import modefront as mf
 from modefront.errors import UnfinishedError
 from modefront.optim.sqp import given
+from modefront.plots.quantities import parameter_std
 from modefront.uncertainty.points import Role, SolvedPoint, redraw, solve_again
+
+OPEN = mf.Identifiability(models=0)
 
 
 def data_of(sets: int) -> mf.ModalData:
@@ -80,3 +83,28 @@ def test_a_level_that_does_not_hold_its_objective_is_solved_again_without_a_warn
     point = SolvedPoint("end", replace(start, weights=np.array([1.0, 0.0])), role)
     solved = solve_again(problem, [point], np.ones(2), "std", rng=np.random.default_rng(0))
     assert solved["end"].converged
+
+
+@pytest.mark.slow(3)
+@pytest.mark.usefixtures("short_chains")
+def test_the_most_probable_model_has_its_posterior_and_is_not_solved_again_by_weights() -> None:
+    """Least is not what the groups sum: of two frequencies, the data know one thirty times better.
+
+    Solved again with weights of groups, it left for where both count the same.
+    """
+    model = mf.chain(["k"], [1.0] * 3, [100.0] * 3, stiffness_parameters=["k"] * 3)
+    f = model.modes(np.ones(1), 3, derivatives=False).frequency * [1.03, 0.97, 1.02]
+    unknown = np.full((3, 3), np.nan)
+    data = mf.modal_data(f, unknown, model.sensors, frequency_std=f * [0.001, 0.03, 0.001])
+    groups = mf.Group("two", frequency=[1, 2]), mf.Group("one", frequency=[3])
+    problem = mf.updating_problem(model, data, groups, {"k": (0.3, 3.0)}, {"k": 1.0})
+    again, search = mf.Uncertainty(bootstrap=2), mf.Search(doubt=0.5)
+    found = mf.solve(problem, points=3, search=search, uncertainty=again, identifiability=OPEN)
+    best = found["label"].values == "most-probable"
+    for known in (found["theta_std"].values, found["bootstrap_theta_std"].values):
+        assert np.isnan(known[best]).all()
+        assert np.isfinite(known[~best][:3]).all()
+    assert parameter_std(found.data)[best] == pytest.approx(found["posterior_std"].values[None])
+    change = np.ptp(found["front_misfit"].values[found["kind"].values == "front"], axis=0)
+    assert f"change by {change.max():.2g} times those expected" in " ".join(found.verdict)
+    assert "no-scatter" not in [x.kind for x in found.findings]

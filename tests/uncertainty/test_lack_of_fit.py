@@ -1,12 +1,18 @@
 """Errors beside the scatter of data sets tell whether a model lacks something."""
 
+import re
+
 import numpy as np
 import pytest
 import scipy.stats
 
 import modefront as mf
 from modefront._typing import Floats
-from modefront.uncertainty.inference import CHANCE, lack_of_fit, most_probable
+from modefront.datasets import Array, ArrayDataset
+from modefront.front.point import Kind
+from modefront.reports.page import _noise
+from modefront.results.verdict import _front
+from modefront.uncertainty.inference import CHANCE, _fit, _misfits, lack_of_fit, most_probable
 from modefront.uncertainty.noise import Uncertainty
 from modefront.uncertainty.prior import NoisePrior
 from modefront.work.task import IMMEDIATE
@@ -55,6 +61,42 @@ def test_of_right_models_the_probabilities_are_uniform() -> None:
 def test_a_spring_that_the_model_lacks_shows_in_several_sets_only() -> None:
     assert (lack(problem_of(1, SPRING)) < CHANCE).any()
     assert np.isnan(lack(problem_of(1, SPRING, sets=1))).all()
+
+
+@pytest.mark.parametrize("sets", [1, 12])
+def test_a_compromise_is_one_beside_the_errors_of_all_sets_together(sets: int) -> None:
+    """The scatter of the sets, which no model explains, does not hide how far a front goes."""
+    problem = problem_of(3, 0.0, sets)
+    noise = NoisePrior().of(problem, Uncertainty().of(problem.data))
+    assert noise is not None
+    best = most_probable(problem, noise, [problem.start], IMMEDIATE)[0].theta
+    fit = _fit(noise, best)
+    thetas = best * [[1, 1], [0.98, 1], [1, 1.2]]
+    own = noise.problem
+    far = _misfits(noise, list(thetas))
+    data = {
+        "label": (("point",), ["most-probable", "nbi-1", "nbi-2"]),
+        "kind": (("point",), [Kind.MOST_PROBABLE.value, Kind.FRONT.value, Kind.FRONT.value]),
+        "error": (("point", "group"), [np.sqrt(problem.evaluate(x).J) for x in thetas]),
+        "paired_mode": (("point", "mode"), np.tile(fit["likely_mode"], (3, 1))),
+        "likely_mode": (("mode",), fit["likely_mode"]),
+        "misfit": (("group",), fit["misfit"]),
+        "front_misfit": (("point", "group"), far),
+        "scatter_share": (("group",), fit["scatter_share"]),
+        "group": (("group",), ["frequencies", "shapes"]),
+    }
+    arrays = {x: Array(y, np.array(z)) for x, (y, z) in data.items()}
+    results = ArrayDataset(arrays, {"reference": "most-probable"})
+    (said,) = _front(results)
+    frequencies, shapes = np.ptp(far[1:], axis=0)
+    assert min(frequencies, shapes) > 0.5
+    greatest = max(frequencies, shapes)
+    (change,) = re.findall(r"of (?:frequencies|shapes) change by ([0-9.]+) times", said)
+    assert float(change) == pytest.approx(greatest, rel=0.06)
+    near = best * 1.001
+    slope = np.sqrt(problem.evaluate(near).J) - arrays["error"].values[0]
+    slope /= noise.over_expected(own.evaluate(near).J) - far[0]
+    assert _noise(results)[0] == pytest.approx(slope[0], rel=0.1)
 
 
 def test_of_a_model_that_lacks_something_nothing_is_determined() -> None:

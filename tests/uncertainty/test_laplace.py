@@ -12,6 +12,7 @@ from modefront._typing import Floats
 from modefront.optim.problem import Evaluation, with_second_order
 from modefront.optim.scalarisation import LogSum
 from modefront.optim.sqp import Options, begin, solve
+from modefront.results.assemble import left_open
 from modefront.uncertainty.prediction import draw
 from modefront.uncertainty.scatter import Posterior, laplace
 
@@ -102,6 +103,15 @@ def test_what_residuals_do_not_change_keeps_its_prior_and_is_named() -> None:
     assert abs(direction / np.linalg.norm(direction) @ [2, -1]) == pytest.approx(np.sqrt(5))
     variance = np.array([1.0, 2.0]) @ posterior.covariance @ [1.0, 2.0]
     assert variance == pytest.approx(point.J[0] / 40 / (A[:, 0] @ A[:, 0]), rel=1e-6)
+
+
+def test_what_is_left_open_does_not_depend_on_units() -> None:
+    """As of a modulus in Pa and a factor that only their product determines."""
+    A, y = regression(np.random.default_rng(0), 40)
+    B = np.column_stack([A[:, 0] / 1e11, A[:, 0], A[:, 1]])
+    lower, upper = np.array([[-50e11, -50, -50], [50e11, 50, 50]])
+    problem = squares(lambda theta: [(B @ theta - y, B)], lower, upper, 1)
+    assert left_open(found_at(problem, np.array([40.0]))[1].free).tolist() == [True, True, False]
 
 
 def test_a_parameter_pressed_against_a_bound_is_given() -> None:

@@ -7,6 +7,7 @@ import pytest
 import scipy.stats
 
 from modefront._typing import Floats
+from modefront.uncertainty.inference import Inference
 from modefront.uncertainty.prediction import (
     STEP,
     TruncationError,
@@ -15,6 +16,7 @@ from modefront.uncertainty.prediction import (
     stencil,
     summary,
 )
+from modefront.uncertainty.sampling import Draws
 
 WIDE = np.full(3, -1e9), np.full(3, 1e9)
 MIDDLE = np.array([1.0, -2.0, 0.5])
@@ -49,6 +51,14 @@ def test_covariances_of_linear_predictions_are_exact_also_at_bounds() -> None:
         S = points.slopes(response(MIDDLE, A), response(points.theta, A))
         assert S @ S.T == pytest.approx(expected, rel=1e-9, abs=1e-9 * expected.max())
     assert result >= 40
+
+
+def test_the_gaussian_of_draws_has_the_covariance_of_parameters_in_any_units() -> None:
+    unit, spread = np.array([2e11, 1.0, 1e-12]), [[0.01, 0, 0], [0.03, 0.04, 0], [0, 0, 0.02]]
+    z = np.random.default_rng(0).normal(size=(500, 3)) @ np.transpose(spread)
+    draws = Draws(unit * (1 + z), np.zeros((500, 0)), np.zeros((500, 0)))
+    found = Inference(draws, {}, None, None, np.zeros((0, 1))).gaussian(1.5 * unit)
+    assert found.covariance / np.outer(unit, unit) == pytest.approx(np.cov(z.T), rel=1e-9)
 
 
 def test_errors_of_differences_are_those_of_the_third_derivative() -> None:

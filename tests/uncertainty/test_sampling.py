@@ -325,19 +325,19 @@ def test_agreement_and_size_are_as_they_are_defined(steps: int, memory: float) -
 
 @pytest.mark.parametrize("z", [-3.0, -0.4, 0.0, 2.5])
 def test_parameters_have_their_priors_between_the_bounds(z: float) -> None:
-    """Uniform, normal, and lognormal with a lower bound that logarithms do not have."""
+    """Uniform, normal in any unit, and lognormal with a bound that logarithms do not have."""
     problem = SimpleNamespace(
         objectives=(),
-        start=np.array([1.0, 2.0, 0.9]),
-        lower=np.array([0.2, -1.0, 0.0]),
-        upper=np.array([5.0, 7.0, 1.0]),
-        priors=(None, Prior("normal", 1.5), Prior("lognormal", 0.4)),
+        start=np.array([1.0, 2e3, 0.9]),
+        lower=np.array([0.2, -1e3, 0.0]),
+        upper=np.array([5.0, 7e3, 1.0]),
+        priors=(None, Prior("normal", 1.5e3), Prior("lognormal", 0.4)),
     )
     of, at, step = Standardised(cast(UpdatingProblem, problem)), np.full(3, z), 1e-5
     theta, slope = of.theta(at)
     normal, lognormal = (-3 / 1.5, 5 / 1.5), (-np.inf, np.log(1 / 0.9) / 0.4)
     x, y = (scipy.stats.truncnorm(*ends).ppf(ndtr(z)) for ends in (normal, lognormal))
-    expected = [0.2 + 4.8 * ndtr(z), 2 + 1.5 * x, 0.9 * np.exp(0.4 * y)]
+    expected = [0.2 + 4.8 * ndtr(z), 2e3 + 1.5e3 * x, 0.9 * np.exp(0.4 * y)]
     assert theta == pytest.approx(expected, rel=1e-7)
     differences = (of.theta(at + step)[0] - of.theta(at - step)[0]) / (2 * step)
     assert slope == pytest.approx(differences, rel=1e-6)

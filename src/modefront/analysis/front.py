@@ -16,7 +16,7 @@ from modefront.front.dominance import distinct_points
 from modefront.front.front import Front, best_minima
 from modefront.front.methods import METHODS
 from modefront.front.options import Pareto
-from modefront.front.point import WEIGHTED, Kind, Point, of_kind
+from modefront.front.point import Kind, Point, of_kind
 from modefront.front.proposers.polish import Polish
 from modefront.front.search import State
 from modefront.front.simplex import Payoff, default_points, lattice, payoff
@@ -229,7 +229,8 @@ def _solved_points(
     """Return the points with what each of them solves, as far as that is a programme.
 
     Points of weights follow from their weights, points of normal-boundary intersection from their
-    edges; those of the identifiable part solve bounds.
+    edges; those of the identifiable part solve bounds. The most probable model is none of
+    them: its residuals have other units, and priors hold it, too. It has its posterior.
     """
     edges, out = of_kind(front.points, Kind.EDGE), list[SolvedPoint]()
     for i, (point, edge) in enumerate(zip(edges, front.edges, strict=True)):
@@ -254,7 +255,7 @@ def _solved_points(
         role, kind = None, point.kind
         if kind is Kind.OPTIMAL:
             role = Role("optimal")
-        elif kind in WEIGHTED or (kind is Kind.FRONT and along == "weights"):
+        elif kind in (Kind.GIVEN, Kind.EQUAL) or (kind is Kind.FRONT and along == "weights"):
             role = Role("weights")
         elif kind is Kind.FRONT and along == "boundary":
             role = between(point.solution, whole, front.target)

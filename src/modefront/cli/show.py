@@ -385,7 +385,8 @@ def print_comparison(comparison: Comparison, *, every: bool = False) -> None:
     screen.say("Studies side by side", style="bold")
     screen.say(
         "Errors are root mean squares, which mean the same in all studies. Ranges are those of all "
-        "Pareto-optimal models, edges and weighted ones included."
+        "Pareto-optimal models, edges and weighted ones included; of predictions, of equivalent "
+        "models too."
     )
     rows = [[name, *map(_cell, row)] for name, row in comparison.rows.items()]
     screen.table("", columns, rows)

@@ -328,7 +328,8 @@ def sensitivities(problem: UpdatingProblem) -> Sensitivities:
     Raises ModelError where the model has no modes there.
     """
     modes, pairs = problem.modes(problem.start)
-    unit = np.where(problem.lower > 0, problem.start, problem.upper - problem.lower)
+    span = problem.upper - problem.lower
+    unit = np.where(problem.lower * problem.upper > 0, problem.start, span)
     slopes = modes.dfrequency[pairs.index].T * unit[:, None]
     phi, dphi = modes.phi[:, pairs.index], modes.dphi[:, pairs.index] * unit
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -30,7 +30,7 @@ def figures(studies: Studies) -> Iterator[tuple[str, canvas.Picture]]:
     parameters.
     """
     first = studies[0][1]
-    names, modes = first["parameter"].values, first["mode"].values
+    names, modes = first["parameter"].values, first["mode"].values.tolist()
     faults = []
     for name, data in studies:
         if data.sizes["group"] != 2 or not front_points(data).size:
@@ -47,7 +47,8 @@ def figures(studies: Studies) -> Iterator[tuple[str, canvas.Picture]]:
     def fits(data: Dataset) -> Curves:
         error = 100 * (data["frequency"].values / data["measured_frequency"].values - 1)
         for title, values in (("mode", error), ("MAC", data["mac"].values)):
-            yield from zip([f"{title} {r}" for r in modes], values.T, strict=False)
+            of = dict(zip(data["mode"].values.tolist(), values.T, strict=True))
+            yield from ((f"{title} {r}", of[r]) for r in modes if r in of)
 
     figure = _along(studies, fits, len(modes))
     for above, below in zip(figure.axes[: len(modes)], figure.axes[len(modes) :], strict=True):

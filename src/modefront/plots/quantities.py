@@ -30,7 +30,7 @@ def front(data: Dataset, *, log: bool = False) -> canvas.Picture:
     """Return the front in the space of errors; axes are logarithmic if ``log``."""
     error, groups = data["error"].values, data.sizes["group"]
     if log:
-        error = np.maximum(error, 1e-4 * np.nanmax(error))
+        error = np.maximum(error, 1e-4 * np.max(error, where=np.isfinite(error), initial=0.0))
     if groups == 1:
         return _one(data, error)
     figure = _two(data, error) if groups == 2 else _many(data, error)
@@ -156,11 +156,11 @@ def _known(data: Dataset, name: str) -> Any:
 
 def parameter_std(data: Dataset) -> Floats:
     """Return standard deviations (points, p) by errors of the data, or of the posterior; or NaN."""
-    out = np.full(data["theta"].values.shape, np.nan)
+    out, best = np.full(data["theta"].values.shape, np.nan), position(data)
     if "theta_std" in data:
-        out = data["theta_std"].values
-    else:
-        out[position(data)] = _known(data, "posterior_std")
+        out = data["theta_std"].values.copy()
+    if np.isnan(out[best]).all():
+        out[best] = _known(data, "posterior_std")
     return np.where(np.isfinite(out), out, np.nan)
 
 
@@ -336,11 +336,11 @@ def predictions(data: Dataset) -> canvas.Picture:
         if not known.size or not value or np.isnan(value):
             continue
         std = np.nan if of.std is None else of.std
-        std = np.exp(std) if of.variable.logarithmic else 1 + abs(std / value)
-        ends = np.array([known.min(), known.max()])
-        axes.plot(ends / value, [y, y], **bar)
+        sides = np.array([-std, std])
+        ticks = np.exp(sides) if of.variable.logarithmic else 1 + sides / value
+        axes.plot(of.extent[:2] / value, [y, y], **bar)
         axes.plot(known / value, [y] * known.size, "|", color=canvas.COLOURS[0], ms=5)
-        axes.plot([1 / std, std], [y, y], "-|", color=canvas.COLOURS[1], lw=1.2, ms=8)
+        axes.plot(ticks, [y, y], "-|", color=canvas.COLOURS[1], lw=1.2, ms=8)
         axes.plot(1, y, "*", **star)
         axes.plot(of.values[nominal] / value, [y] * nominal.size, "X", color="0.4", ms=6)
     axes.set_yticks(range(len(rows)), labels)

@@ -139,8 +139,10 @@ def _front(name: str, data: Dataset, arrays: _Arrays) -> dict[str, Any]:
 
 
 def _noise(data: Dataset) -> Floats:
-    """Return the error that is expected of each group at the reference; NaN where unknown."""
+    """Return by how much each error changes at the reference, for that expected; NaN if unknown."""
     error = data["error"].values[position(data)]
+    if "scatter_share" in data:  # which no model explains
+        error = error * (1 - data["scatter_share"].values)
     misfit = data["misfit"].values if "misfit" in data else np.zeros(error.shape)
     return np.divide(error, misfit, out=np.full(error.shape, np.nan), where=misfit > 0)
 

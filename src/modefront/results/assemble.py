@@ -12,13 +12,13 @@ from modefront.front.dominance import nondominated, undominated
 from modefront.front.front import Front
 from modefront.front.gaps import branch_numbers
 from modefront.front.methods import METHODS
-from modefront.front.point import WEIGHTED, Kind, label, of_kind
+from modefront.front.point import WEIGHTED, Kind, front_points, label, of_kind
 from modefront.identifiability.combinations import cosines, determination, index
 from modefront.optim.problem import at_bounds
 from modefront.residuals.problem import UpdatingProblem
 from modefront.results.findings import Determinations, as_values, findings
 from modefront.results.schema import FORMAT, Values, described
-from modefront.rounding import COMPUTED, TINY
+from modefront.rounding import COMPUTED
 from modefront.uncertainty.inference import CHANCE, Inference, refused
 from modefront.uncertainty.prediction import summary
 from modefront.uncertainty.prior import NoiseModel, prior_widths
@@ -226,8 +226,8 @@ def _std(covariance: Floats, free: Floats) -> Floats:
 
 
 def left_open(free: Floats) -> Bools:
-    """Return the parameters that have a part in directions (p, d)."""
-    return (np.abs(free) > COMPUTED * np.abs(free).max(initial=TINY)).any(axis=1)
+    """Return the parameters that have a part in orthonormal directions (p, d)."""
+    return np.asarray((np.abs(free) > COMPUTED).any(axis=1))
 
 
 def _posterior(front: Front, analysis: FrontAnalysis) -> Values:
@@ -288,13 +288,16 @@ def with_intervals(data: ArrayDataset, noise: NoiseModel, inference: Inference) 
     settled = draws.settled and not np.any(refused(fit["misfit"], fit["nominal_misfit"]))
     best = data["kind"].values == Kind.MOST_PROBABLE.value
     (side,), (theta,) = (data[name].values[best] for name in ("at_bound", "theta"))
-    held = side * (freed.theta - theta) > 0 if freed else np.zeros(side.size, dtype=np.bool_)
+    held = side * (freed.theta - theta) > 0 if freed else side != 0
     interval = intervals(draws.theta, side, data["bounds"].values)
     share = (interval[:, 2] - interval[:, 0]) / widths
     known = (share < DETERMINED) & ~held & (settled and not (fit["lack_of_fit"] < CHANCE).any())
     place = np.where(known, 0, np.where(share > OPEN, 2, 1))
+    along = np.full(data["error"].values.shape, np.nan)
+    along[front_points(data)] = inference.along
     values = {
         **fit,
+        "front_misfit": along,
         "sample_theta": draws.theta,
         "interval": interval,
         "trust": np.array(TRUST)[place],

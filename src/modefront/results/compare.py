@@ -3,7 +3,8 @@ r"""Results of several model classes and configurations side by side.
 All is measured in the space of errors :math:`e_i = \sqrt{J_i / a_i}`, which has the same meaning
 for every class (Christodoulou et al. 2008, doi:10.1016/j.cma.2008.04.010). The length of a front is
 that of the shortest tree that joins its Pareto-optimal points, without gaps. Ranges and distances
-are those of all Pareto-optimal models, edges and weighted ones included.
+are those of all Pareto-optimal models, edges and weighted ones included; those of predictions count
+models that are equivalent to these, too, as the results say.
 """
 
 from collections.abc import Iterator, Sequence
@@ -231,6 +232,8 @@ def _summary(name: str, data: Dataset, first: float) -> Summary:
 
 def _spreads(variable: str, prefix: str, models: Dataset, chosen: Dataset) -> Iterator[Spread]:
     names, values = models[models[variable].dims[1]].values, models[variable].values
+    if f"{variable}_range" in models:
+        values = models[f"{variable}_range"].values[:2]
     for name, column, (value,) in zip(names, values.T, chosen[variable].values.T, strict=True):
         known = column[np.isfinite(column)].tolist() or [np.nan]
         yield Spread(f"{prefix}{name}", min(known), max(known), float(value))

@@ -158,7 +158,7 @@ def _scatter(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) ->
         exact = int((np.isfinite(values) & ~(std > 0)).sum())
         if analysis.source == "std" and exact:
             yield found("exact-data", values=exact)
-        kinds = {Kind.NOMINAL.value, *INTERNAL}
+        kinds = {Kind.NOMINAL.value, Kind.MOST_PROBABLE.value, *INTERNAL}
         labels = [point.label for point in front.points if point.kind.value not in kinds]
         known = analysis.scatter
         if missing := [name for name in labels if name not in known]:

@@ -148,18 +148,14 @@ def _interval(value: float, low: float, high: float) -> str:
 
 
 def _front(data: Dataset) -> Iterator[str]:
-    """Yield whether the front is a compromise, or its errors change less than noise."""
+    """Yield whether the front is a compromise, or at most one group changes by more than noise."""
     along = front_points(data)
     if along.size < 2 or any(True for _ in _pairs(data)):
         return
-    best, misfit = _row(data, Kind.MOST_PROBABLE), data["misfit"].values
-    error = data["error"].values[along]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        expected = np.where(misfit > 0, best["error"].values / misfit, np.inf)
-    change = np.ptp(error, axis=0) / expected
-    agree = (change < SMALL).any()
-    i = int(np.argmin(change) if agree else np.argmax(change))
-    kind = "agree" if agree else "compromise"
+    change = np.ptp(data["front_misfit"].values[along], axis=0)
+    # Where one group alone changes, its best model gives nothing up.
+    *_, second, first = np.argsort(change, kind="stable")[[0, *range(change.size)]]
+    kind, i = ("agree", second) if change[second] < SMALL else ("compromise", first)
     yield _say(kind, group=data["group"].values[i], change=change[i])
 
 

@@ -25,7 +25,7 @@ from modefront.front.front import Front
 from modefront.front.indicators import coverage
 from modefront.front.options import Pareto, ParetoOptions
 from modefront.front.pareto import pareto_front
-from modefront.front.point import Kind, Point
+from modefront.front.point import Kind, Point, of_kind
 from modefront.identifiability.combinations import superfluous, unchanged_groups
 from modefront.inputs import wrong
 from modefront.optim.sqp import given
@@ -198,7 +198,8 @@ def worked(study: Study, work: Run) -> Dataset:
         maxima = certified_best(problem, find, known, work)
         front = replace(front, points=[*front.points, Point(Kind.MOST_PROBABLE, maxima[0])])
         draws = max(DRAWS, study.uncertainty.draws)
-        inference = infer(noise, [x.theta for x in maxima], draws, seed, work)
+        along = [x.solution.theta for x in of_kind(front.points, Kind.FRONT)]
+        inference = infer(noise, [x.theta for x in maxima], along, draws, seed, work)
     options = study.pareto, study.identifiability, study.uncertainty
     analysis = analyse_front(problem, front, *options, seed, work)
     (nominal,) = work.run([Task(("nominal",), problem.evaluate, (problem.start,))])
@@ -213,7 +214,7 @@ def worked(study: Study, work: Run) -> Dataset:
     gaussian, drawn = analysis.posterior, None
     if noise is not None and inference is not None:
         data = with_intervals(data, noise, inference)
-        gaussian, drawn = inference.gaussian, inference.draws.theta
+        gaussian, drawn = inference.gaussian(problem.upper - problem.lower), inference.draws.theta
     runner = PredictionRunner(problem, study.predictions, seed, work, study.file)
     draws = study.uncertainty.draws
     data = with_predictions(data, runner, study.slack, gaussian, draws, drawn)

@@ -28,6 +28,7 @@ from modefront.uncertainty.prior import NoiseModel
 from modefront.uncertainty.sampling import Draws, draw_models
 from modefront.uncertainty.scatter import Posterior
 from modefront.work.codec import record
+from modefront.work.store import hash_text
 from modefront.work.task import Executor, Task
 
 CHANCE = 0.01  # probability that a fixed parameter, bound or model is blamed wrongly
@@ -127,28 +128,45 @@ class Inference:
     # name and value of the fixed parameter that is wrong, and the errors (n,) over those expected
     # with it free; None where none lowers them beyond chance
     unfixed: tuple[str, float, Floats] | None
+    along: Floats  # (models, n) errors of the models of the front over those expected
 
-    @property
-    def gaussian(self) -> Posterior:
-        """The Gaussian with the covariance of the draws."""
-        p = self.draws.theta.shape[1]
-        lam, V = np.linalg.eigh(np.cov(self.draws.theta, rowvar=False).reshape(p, p))
+    def gaussian(self, span: Floats) -> Posterior:
+        """Return the Gaussian with the covariance of the draws, of ranges ``span`` (p,)."""
+        p = span.size
+        lam, V = np.linalg.eigh(np.cov(self.draws.theta / span, rowvar=False).reshape(p, p))
         moved = lam > np.finfo(float).eps * lam.max(initial=0.0)
-        axes = V[:, moved] * np.sqrt(lam[moved])
+        axes = span[:, None] * V[:, moved] * np.sqrt(lam[moved])
         return Posterior(axes, np.zeros(p, dtype=np.bool_), np.zeros((p, 0)))
 
 
+# 6 arguments: the posterior and the models that are known, how many are drawn, and how.
 def infer(
-    noise: NoiseModel, maxima: Sequence[Floats], count: int, seed: int, work: Executor
+    noise: NoiseModel,
+    maxima: Sequence[Floats],
+    front: Sequence[Floats],
+    count: int,
+    seed: int,
+    work: Executor,
 ) -> Inference:
-    """Return what follows from the posterior with maxima (p,), the greatest first, by draws."""
+    """Return what follows from the posterior with maxima (p,), the greatest first, by draws.
+
+    The models (p,) of the ``front`` are compared with what is expected, too.
+    """
     theta = maxima[0]
+    mark = hash_text(f"{[x.tolist() for x in front]}")[:8]
+    (along,) = work.run([Task(("most-probable", "front", mark), _misfits, (noise, front))])
     (fit,) = work.run([Task(("most-probable", "fit"), _fit, (noise, theta))])
     (free,) = work.run([Task(("most-probable", "freed"), freed, (noise, theta))])
     # One round where the model cannot be used.
     rounds = 1 if np.any(refused(fit["misfit"], fit["nominal_misfit"])) else None
     draws = draw_models(noise, maxima, count, seed, work, rounds)
-    return Inference(draws, fit, free, unfixed(noise, theta, fit["misfit"], work))
+    return Inference(draws, fit, free, unfixed(noise, theta, fit["misfit"], work), along)
+
+
+def _misfits(noise: NoiseModel, thetas: Sequence[Floats]) -> Floats:
+    """Return the errors (models, n) of models (p,) over those expected."""
+    found = [noise.problem.evaluate(theta, derivatives=False).J for theta in thetas]
+    return np.array([noise.over_expected(J) for J in found]).reshape(-1, noise.a.size)
 
 
 def _fit(noise: NoiseModel, theta: Floats) -> dict[str, Any]:
@@ -160,6 +178,7 @@ def _fit(noise: NoiseModel, theta: Floats) -> dict[str, Any]:
         "misfit": misfit,
         "nominal_misfit": before,
         "lack_of_fit": lack_of_fit(noise, found),
+        "scatter_share": np.divide(noise.S, found.J, out=np.zeros(found.J.size), where=found.J > 0),
         "likely_mode": found.quantities["paired_mode"],
         **candidates(noise, found),
     }

@@ -182,7 +182,8 @@ class Standardised:
             right = ndtr(-self.above) + self.share * ndtr(-z[known])
             x = np.where(left < right, ndtri(left), -ndtri(right))
             nominal, away = self.problem.start[known], self.std * x
-            theta[known] = np.where(self.log, nominal * np.exp(away), nominal + away)
+            grown = np.exp(np.where(self.log, away, 0.0))  # not of a deviation in any unit
+            theta[known] = np.where(self.log, nominal * grown, nominal + away)
             scale = self.std * np.where(self.log, theta[known], 1.0)
             slope[known] = scale * self.share * np.exp((x**2 - z[known] ** 2) / 2)
         return np.clip(theta, lower, upper), slope

@@ -140,7 +140,7 @@ class Scatter:
 
     theta: Floats  # (sources, p) changes of the parameters
     J: Floats  # (sources, n) changes of the objectives at the solution, of its own data
-    free: Floats  # (p, d) directions that no data determine, orthonormal over the ranges
+    free: Floats  # (p, d) directions over the ranges that no data determine, orthonormal
     warnings: tuple[LinearisationWarning, ...]  # reasons why the linearisation may not be valid
 
     @property
@@ -204,7 +204,7 @@ def scatter(
         LinearisationWarning.LEAVES: leaves[held].any(),
         LinearisationWarning.SWITCHES: c.switch(dw, theta @ evaluation.dJ.T, dtau),
     }
-    return Scatter(theta, J, span[:, None] * free, tuple(x for x in holds if holds[x]))
+    return Scatter(theta, J, free, tuple(x for x in holds if holds[x]))
 
 
 def _is_minimum(W: Floats, C: Floats, dJ: Floats, c: Conditions) -> bool:
@@ -324,7 +324,7 @@ class Posterior:
 
     axes: Floats  # (p, m) principal axes, one standard deviation long
     held: Bools  # (p,) parameters that a bound holds
-    free: Floats  # (p, d) directions that keep their prior, orthonormal over the ranges
+    free: Floats  # (p, d) directions over the ranges that keep their prior, orthonormal
 
     @property
     def covariance(self) -> Floats:
@@ -349,4 +349,4 @@ def laplace(problem: Problem, evaluation: Evaluation, a: Floats) -> Posterior | 
     lam, V = np.linalg.eigh(half)
     if lam.size and lam[0] <= 0:
         return None
-    return Posterior(B @ V / np.sqrt(lam), held, span[:, None] * free)
+    return Posterior(B @ V / np.sqrt(lam), held, free)
