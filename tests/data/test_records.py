@@ -106,6 +106,16 @@ def test_what_is_wrong_is_said(tmp_path: Path, text: str, more: str, message: st
         read_test(tmp_path / "t.toml")
 
 
+def test_setups_are_joined_by_their_sensors_whatever_their_order(tmp_path: Path) -> None:
+    for name, two in (("1", "a,b"), ("2", "c,d"), ("3", "d,a")):
+        (tmp_path / f"{name}.csv").write_text(_csv(f"time,{two}"))
+    sets = [f'[[set]]\nfiles = ["{name}.csv"]\n' for name in "123"]
+    (tmp_path / "t.toml").write_text('[test]\nkind = "ambient"\n' + "".join(sets))
+    setups = read_test(tmp_path / "t.toml").setups
+    assert [each.sensors for each in setups] == [("a", "b"), ("d", "a"), ("c", "d")]
+    assert [each.name for each in setups] == ["1", "3", "2"]
+
+
 def test_arrays_need_a_rate_names_and_the_right_shape(tmp_path: Path) -> None:
     two = 'rate = 16.0\nsensors = ["a", "b"]\n'
     for shape, kind, more, message in (

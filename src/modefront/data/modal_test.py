@@ -268,13 +268,17 @@ def _from_toml(path: Path) -> ModalTest:
     sets = _set_tables(root, ambient, common)
     root.close()
     refuse(root.faults)
-    setups, sensors = tuple(map(read_records, sets)) if ambient else (), list[str]()
-    for setup in setups:
-        if sensors and set(sensors).isdisjoint(setup.sensors):
-            expected = f"a sensor that another set has: {', '.join(sorted(set(sensors))[:8])}"
-            found = ", ".join(setup.sensors[:8])
-            raise InputError(Fault(root.file, f"[[set]] {setup.name!r}", expected, found))
-        sensors += setup.sensors
+    left, setups, sensors = list(map(read_records, sets)) if ambient else [], [], list[str]()
+    while left:  # each setup shares sensors with some before it
+        joined = (
+            k for k, x in enumerate(left) if not setups or not {*sensors}.isdisjoint(x.sensors)
+        )
+        if (k := next(joined, None)) is None:
+            expected = f"a sensor that another set has: {', '.join(sorted({*sensors})[:8])}"
+            found = ", ".join(left[0].sensors[:8])
+            raise InputError(Fault(root.file, f"[[set]] {left[0].name!r}", expected, found))
+        setups.append(left.pop(k))
+        sensors += setups[-1].sensors
     data_sets = () if ambient else tuple(_data_set(root, each) for each in sets)
     sensors += [x for each in data_sets for x in each.data.responses]
     for place in places:
@@ -282,7 +286,7 @@ def _from_toml(path: Path) -> ModalTest:
             root.fault(f"[geometry] {place}", "a sensor of the files", suggestion(place, sensors))
     refuse(root.faults)
     band, modes = given.get("band"), given.get("modes")
-    return ModalTest(name, band, modes, data_sets, setups, chosen, places)
+    return ModalTest(name, band, modes, data_sets, tuple(setups), chosen, places)
 
 
 def _set_tables(root: opt.Table, ambient: bool, common: SetFiles) -> list[SetFiles]:
