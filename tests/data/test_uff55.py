@@ -85,6 +85,16 @@ def test_a_sensor_without_node_takes_none_that_another_has(tmp_path: Path) -> No
     assert modes.shape[0, 0, :, 0] / modes.shape[0, 0, 1, 0] == pytest.approx([0.25, 1, -0.5])
 
 
+def test_a_mode_that_does_not_move_the_sensors_has_no_shape(tmp_path: Path) -> None:
+    shapes = np.array([[0.5, 1.0, 0.0], [0.0, 0.0, 1.0]], complex)
+    modes = {k: (complex(-0.3, 25.0 * k), shape) for k, shape in enumerate(shapes, 1)}
+    write_uff55(tmp_path / "a.uff", ["a"], [modes], ["1Z", "2Z", "1X"])
+    read = read_uff55(tmp_path / "a.uff")
+    data = read.at({name: place for name in ("1Z", "2Z") if (place := read.place(name))})
+    assert np.isfinite(data.shape).all(axis=2).tolist() == [[True, False]]
+    assert np.isfinite(data.frequency).all()
+
+
 def system(kind: int, label: int = 4) -> dict[str, Any]:
     """A coordinate system whose x is the y of space, and y its z; its origin is at (0, 0, 1)."""
     rows = np.array([[0.0, 1, 0], [0, 0, 1], [1, 0, 0], [0, 0, 1]])

@@ -318,8 +318,12 @@ class NodalModes:
         return np.asarray(self.shape[:, :, node, used] @ direction[used])
 
     def at(self, sensors: Mapping[str, tuple[int, Floats]]) -> ModalData:
-        """Return the modal data of sensors, each a position among the nodes and a vector (6,)."""
+        """Return the modal data of sensors, each a position among the nodes and a vector (6,).
+
+        Of a mode that does not move them, there is no shape.
+        """
         shape = np.stack([self.along(*place) for place in sensors.values()], axis=-1)
+        shape[~np.nan_to_num(shape).any(axis=2)] = np.nan
         std = np.full(shape.shape, np.nan)
         return replace(self.data, sensors=tuple(sensors), shape=shape, shape_std=std)
 
