@@ -94,6 +94,8 @@ def test_files_of_a_set_are_measured_at_once_and_still_channels_are_left_out(
         ("time,a,b\n,1,2\n,3,1\n,2,3\n", "", "time: expected ascending times"),
         (_csv(rows=np.column_stack([T, 0 * Y[0], 0 * Y[1]])), "", "a sensor that moves"),
         (_csv(), '[[set]]\nfiles = ["z.csv"]\n', "expected a sensor that another set has: a, b"),
+        (_csv(), 'columns = { x = "c" }\n', "columns: expected a column of the CSV files"),
+        (_csv(), '[sensors]\nq = "9Z"\n', "sensors. q: expected a channel of the files: a, b, f"),
         (_csv(), 'reference = ["a"]\n', "expected a known key"),
         (_csv(), 'quantity = "receptance"\n', "expected a known key"),
     ],

@@ -121,6 +121,8 @@ def read_records(setup: SetFiles) -> Records:
                 raise wrong(path, EXPECTED, "others", f"sensor {name!r}")
             names.append(name)
             rows.append(row)
+    for own in (x for x, name in setup.columns.items() if name not in (*names, SECONDS)):
+        raise wrong(setup.files[0], "a column of the CSV files of the set", repr(own), "columns")
     moving = {name: row for name, row in zip(names, rows, strict=True) if np.ptp(row) > 0}
     if not moving:
         raise wrong(setup.files[0], "a sensor that moves", "none", "records")
@@ -281,6 +283,12 @@ def _from_toml(path: Path) -> ModalTest:
         sensors += setups[-1].sensors
     data_sets = () if ambient else tuple(_data_set(root, each) for each in sets)
     sensors += [x for each in data_sets for x in each.data.responses]
+    others = [x for each in data_sets for x in each.data.references]
+    known = dict.fromkeys([*sensors, *others, *(x for each in setups for x in each.still)])
+    labels = [named.get(name, name) for name in known]
+    for sensor in (x for x in named if x not in known):
+        expected = "a channel of the files: " + ", ".join(labels[:8])
+        root.fault(f"[sensors] {sensor}", expected, suggestion(named[sensor], labels))
     for place in places:
         if place not in sensors:
             root.fault(f"[geometry] {place}", "a sensor of the files", suggestion(place, sensors))
@@ -357,11 +365,6 @@ def _data_set(root: opt.Table, known: SetFiles) -> DataSet:
     if names:
         plain = {channel.replace("-", "") for channel in names}
         turned = len(plain & references) > len(plain & responses)
-        labels = sorted(references if turned else responses)
-        expected = "a channel of the files: " + ", ".join(labels[:8])
-        for label in sorted(plain.difference(labels)):
-            root.fault(f"[sensors] {names.get(label, '')}", expected, suggestion(label, labels))
-        refuse(root.faults)
     named = []
     for channel in channels:
         response, sign = channel_name(channel.response, names)
