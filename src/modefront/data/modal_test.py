@@ -270,7 +270,8 @@ def _from_toml(path: Path) -> ModalTest:
     sets = _set_tables(root, ambient, common)
     root.close()
     refuse(root.faults)
-    left, setups, sensors = list(map(read_records, sets)) if ambient else [], [], list[str]()
+    left, setups = list(map(read_records, sets)) if ambient else [], list[Records]()
+    sensors = list[str]()
     while left:  # each setup shares sensors with some before it
         joined = (
             k for k, x in enumerate(left) if not setups or not {*sensors}.isdisjoint(x.sensors)
