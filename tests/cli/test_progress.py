@@ -133,6 +133,10 @@ def test_the_time_of_a_run_is_estimated_and_more_work_takes_longer(tmp_path: Pat
     small = estimate(replace(study, search=Search(evaluations=100)))
     assert small is not None
     assert small.searches["edges"][1] < short.searches["edges"][1]
+    doubtful = estimate(replace(study, search=Search(doubt=0.9)))
+    assert doubtful is not None
+    assert doubtful.searches["edges"] == pytest.approx((3.0, 4.0)), "one start of each at least"
+    assert 0 < doubtful.range[0] < doubtful.range[1]
     points = estimate(replace(study, pareto=mf.Pareto(points=9000)))
     assert points is not None
     assert points.searches["front"][0] > 100 * short.searches["front"][0]

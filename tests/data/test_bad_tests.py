@@ -139,6 +139,19 @@ def test_a_sensor_in_g_is_named_by_reciprocity(tmp_path: Path, roving: str) -> N
     assert "between g and m/s²" in warning
 
 
+def test_each_set_may_have_channels_of_its_own(tmp_path: Path) -> None:
+    H, path = accelerances()[0, 0], tmp_path / "test.toml"
+    for file, responses in (("a.uff", (1, 2)), ("b.uff", (1, 3))):
+        (tmp_path / file).write_text("".join(uff58(H, i, 1) for i in responses))
+    sets = '[test]\n[[set]]\nfiles = ["a.uff"]\n[[set]]\nfiles = ["b.uff"]\n[sensors]\n'
+    path.write_text(sets + 'top = "3Z"\nlow = "1-Z"\nmiddle = "2Z"\n')
+    both = [each.data.responses for each in read_test(path).sets]
+    assert both == [("low", "middle"), ("low", "top")]
+    path.write_text(sets + 'top = "4Z"\nlow = "1Z"\n')
+    with pytest.raises(InputError, match=r"\[sensors\] top: expected a channel .* 1Z, 2Z, 3Z, f"):
+        read_test(path)
+
+
 @pytest.mark.parametrize("letter", ["E", "D", "d"])
 def test_good_files_have_none(tmp_path: Path, letter: str) -> None:
     path = tmp_path / "a.uff"

@@ -1,6 +1,7 @@
 """Modal data in CSV: what is read, and what an empty field means."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -145,6 +146,22 @@ def test_arrays_make_the_same_data_as_a_file(tmp_path: Path) -> None:
         np.testing.assert_array_equal(getattr(made, name), getattr(read_data, name))
     with pytest.raises(InputError, match="shape: expected 1 modes x 3 sensors, found 1 x 2"):
         modal_data(np.ones(1), np.ones((1, 2)), ("a", "b", "c"))
+
+
+@pytest.mark.parametrize(
+    ("frequency", "shape", "message"),
+    [
+        ([1.0, 2.0], [[1.0, 1j], [0.0, 1.0]], "shape: expected real numbers.* found complex ones"),
+        ([1.0, 2.0], [[1.0, 1.0], [0.0, nan]], "shape: expected mode shapes that are not zero"),
+        ([1.0, 0.0], [[1.0, 1.0], [1.0, nan]], "frequency: expected frequencies above 0 Hz"),
+        ([[1.0], [2.0]], [[[1.0, 1.0]]] * 2, "sets: expected 2 names, found 1"),
+    ],
+)
+def test_arrays_of_which_no_residuals_can_be_made_are_refused(
+    frequency: Any, shape: Any, message: str
+) -> None:
+    with pytest.raises(InputError, match=message):
+        modal_data(np.array(frequency), np.array(shape), SENSORS, sets=("a",))
 
 
 @pytest.mark.parametrize("separator", [",", ";", "\t"])

@@ -94,6 +94,8 @@ def test_files_of_a_set_are_measured_at_once_and_still_channels_are_left_out(
         ("time,a,b\n,1,2\n,3,1\n,2,3\n", "", "time: expected ascending times"),
         (_csv(rows=np.column_stack([T, 0 * Y[0], 0 * Y[1]])), "", "a sensor that moves"),
         (_csv(), '[[set]]\nfiles = ["z.csv"]\n', "expected a sensor that another set has: a, b"),
+        (_csv(), 'columns = { x = "c" }\n', "columns: expected a column of the CSV files"),
+        (_csv(), '[sensors]\nq = "9Z"\n', "sensors. q: expected a channel of the files: a, b, f"),
         (_csv(), 'reference = ["a"]\n', "expected a known key"),
         (_csv(), 'quantity = "receptance"\n', "expected a known key"),
     ],
@@ -104,6 +106,16 @@ def test_what_is_wrong_is_said(tmp_path: Path, text: str, more: str, message: st
     (tmp_path / "t.toml").write_text(f'{HEAD}files = ["y.csv"]\n{more}')
     with pytest.raises(InputError, match=message):
         read_test(tmp_path / "t.toml")
+
+
+def test_setups_are_joined_by_their_sensors_whatever_their_order(tmp_path: Path) -> None:
+    for name, two in (("1", "a,b"), ("2", "c,d"), ("3", "d,a")):
+        (tmp_path / f"{name}.csv").write_text(_csv(f"time,{two}"))
+    sets = [f'[[set]]\nfiles = ["{name}.csv"]\n' for name in "123"]
+    (tmp_path / "t.toml").write_text('[test]\nkind = "ambient"\n' + "".join(sets))
+    setups = read_test(tmp_path / "t.toml").setups
+    assert [each.sensors for each in setups] == [("a", "b"), ("d", "a"), ("c", "d")]
+    assert [each.name for each in setups] == ["1", "3", "2"]
 
 
 def test_arrays_need_a_rate_names_and_the_right_shape(tmp_path: Path) -> None:

@@ -67,7 +67,7 @@ def test_complex_modes_of_several_sets_are_read_as_they_were_written(tmp_path: P
     pole = complex(-0.3, 25.0)
     shape = np.array([1.0, -0.5]) * np.exp(0.7j)
     write_uff55(
-        tmp_path / "a.uff", ["a", "b"], [[(pole, shape)], [(2 * pole, shape)]], ["1Z", "2X"]
+        tmp_path / "a.uff", ["a", "b"], [{1: (pole, shape)}, {1: (2 * pole, shape)}], ["1Z", "2X"]
     )
     modes = read_uff55(tmp_path / "a.uff")
     assert (modes.data.sets, modes.data.modes, modes.measured) == (("a", "b"), (1,), ("1Z", "2X"))
@@ -79,10 +79,20 @@ def test_complex_modes_of_several_sets_are_read_as_they_were_written(tmp_path: P
 
 def test_a_sensor_without_node_takes_none_that_another_has(tmp_path: Path) -> None:
     shape = np.array([1.0, -0.5, 0.25], complex)
-    write_uff55(tmp_path / "a.uff", ["a"], [[(complex(-0.3, 25.0), shape)]], ["2X", "top", "1X"])
+    write_uff55(tmp_path / "a.uff", ["a"], [{1: (complex(-0.3, 25.0), shape)}], ["2X", "top", "1X"])
     modes = read_uff55(tmp_path / "a.uff")
     assert modes.measured == ("1X", "2X", "3X")
     assert modes.shape[0, 0, :, 0] / modes.shape[0, 0, 1, 0] == pytest.approx([0.25, 1, -0.5])
+
+
+def test_a_mode_that_does_not_move_the_sensors_has_no_shape(tmp_path: Path) -> None:
+    shapes = np.array([[0.5, 1.0, 0.0], [0.0, 0.0, 1.0]], complex)
+    modes = {k: (complex(-0.3, 25.0 * k), shape) for k, shape in enumerate(shapes, 1)}
+    write_uff55(tmp_path / "a.uff", ["a"], [modes], ["1Z", "2Z", "1X"])
+    read = read_uff55(tmp_path / "a.uff")
+    data = read.at({name: place for name in ("1Z", "2Z") if (place := read.place(name))})
+    assert np.isfinite(data.shape).all(axis=2).tolist() == [[True, False]]
+    assert np.isfinite(data.frequency).all()
 
 
 def system(kind: int, label: int = 4) -> dict[str, Any]:
@@ -163,7 +173,7 @@ def study(folder: Path, sensors: str) -> Path:
     write_example("three-story-c0", folder)
     rows = np.loadtxt(folder / "modes.csv", delimiter=",", skiprows=1, usecols=(2, 4, 5, 6))
     poles = [complex(-0.01, 2 * np.pi * f) for f in rows[:, 0]]
-    shapes = list(zip(poles, rows[:, 1:].astype(complex), strict=True))
+    shapes = dict(enumerate(zip(poles, rows[:, 1:].astype(complex), strict=True), 1))
     write_uff55(folder / "modes.uff", ["a"], [shapes], ["11X", "12X", "13X"])
     file = folder / "study.toml"
     data = f'file = "modes.uff"\n{sensors}'

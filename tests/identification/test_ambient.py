@@ -315,6 +315,17 @@ def test_a_mode_whose_damping_starts_far_too_small_is_not_lost() -> None:
     assert abs(np.log(mode.zeta / zeta)) < 3 * np.sqrt(mode.covariance[1, 1])
 
 
+@pytest.mark.slow(2)
+def test_a_seed_is_kept_beside_as_many_modes_as_are_asked_for() -> None:
+    rng, f = np.random.default_rng(1), np.fft.rfftfreq(4800, 1 / 16)
+    h = (f / 5) ** 2 / (1 - (f / 5) ** 2 + 0.024j * f / 5)
+    y = np.fft.irfft(np.array([[0.6], [0.8]]) * (h * _circular(rng, len(f))), axis=1)
+    y += 0.05 * y.std() * rng.standard_normal(y.shape)
+    records = Records("all", ("a", "b"), 16.0, y)
+    modes = identify([records], (4.0, 6.0), 1, [4.4]).modes
+    assert [mode.frequency for mode in modes] == pytest.approx([4.4, 5.0], rel=0.03)
+
+
 def _beside(
     seed: int, f0: list[float], zeta: list[float], size: list[float]
 ) -> tuple[_Setup, list[Local]]:

@@ -1,5 +1,6 @@
 """Modes of one frequency: found, declared as a pair, and told to a study."""
 
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -9,10 +10,12 @@ from simulation import accelerance, blows
 
 from modefront._typing import Floats
 from modefront.data.csv import read_csv, write_csv
+from modefront.data.modal_test import ModalTest
 from modefront.data.responses import frequency_responses
 from modefront.data.uff import read_uff55, write_uff55
 from modefront.errors import InputError
 from modefront.identification.methods.hammer import identify
+from modefront.identification.modal_test import IdentifiedTest
 from modefront.identification.record import Identification
 from modefront.identification.sets import combine
 from modefront.study.check import check
@@ -72,8 +75,9 @@ def test_a_pair_reaches_files_and_the_check(tmp_path: Path) -> None:
     data = combine(["1"], [identified(0)]).data
     write_csv(tmp_path / "modes.csv", data)
     assert read_csv(tmp_path / "modes.csv").pairs == ((2, 3),)
-    modes = [(complex(-1, 50), np.array([1.0 + 0j, 2.0])), (complex(-1, 50), np.array([1j, 0.1]))]
-    write_uff55(tmp_path / "modes.uff", ["a"], [modes], ["1Z", "2Z"], [[(0, 1)]])
+    pole, shapes = complex(-1, 50), ([1.0 + 0j, 2.0], [1j, 0.1])
+    modes = {number: (pole, np.array(shape)) for number, shape in enumerate(shapes, 1)}
+    write_uff55(tmp_path / "modes.uff", ["a"], [modes], ["1Z", "2Z"], [(1, 2)])
     assert read_uff55(tmp_path / "modes.uff").data.pairs == ((1, 2),)
 
     write_example("three-story-c0", tmp_path / "study")
@@ -112,3 +116,14 @@ def test_a_pair_whose_shapes_nearly_meet_is_no_split_peak(seed: int) -> None:
     result = identify(frequency_responses(f, blows(H, 0.01, rng)))
     assert len(result.modes) == 4
     assert result.pairs == ((1, 2),)
+
+
+def test_modes_keep_their_numbers_in_universal_files_where_a_set_lacks_one(tmp_path: Path) -> None:
+    whole, part = identified(0), identified(1, references=(2, 7))
+    both = (whole, replace(part, modes=part.modes[1:]))
+    modes = combine(["a", "b"], both)
+    test = IdentifiedTest(ModalTest("t", None, None, ()), both, modes, ((1, 2, 3, 4), (2, 3, 4)))
+    test.write(tmp_path / "modes.uff")
+    read = read_uff55(tmp_path / "modes.uff").data
+    np.testing.assert_allclose(read.frequency, test.data.frequency, rtol=1e-5)
+    assert read.pairs == test.data.pairs

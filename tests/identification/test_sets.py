@@ -1,13 +1,15 @@
 """Modes of several sets: which are the same, where data turn the shapes of close ones."""
 
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 
 from modefront._typing import Floats
 from modefront.identification.record import ModeEstimate
-from modefront.identification.sets import mode_groups
+from modefront.identification.sets import combine, mode_groups
 from modefront.identification.shapes import real_shape
 
 SENSORS = tuple("abcd")
@@ -77,3 +79,20 @@ def test_shapes_outside_the_plane_and_modes_apart_are_others() -> None:
     basis = np.linalg.qr(np.random.default_rng(2).standard_normal((4, 4)))[0].T
     sets = [_set([5.0, 5.05], basis[:2]), _set([5.0, 5.5], basis[[2, 0]])]
     assert len(mode_groups(sets)) == 4
+
+
+@pytest.mark.parametrize("order", ["ab bc cd", "ab cd bc", "cd ab bc"])
+def test_sets_that_others_join_to_the_first_one_have_its_sign_and_no_spread(order: str) -> None:
+    shape, sets = dict(zip(SENSORS, [1.0, -3.0, 2.0, 0.5], strict=True)), list[Any]()
+    for names in order.split():
+        phi = np.array([shape[name] for name in names])
+        C = 1e-6 * np.eye(2)
+        _, (mode,) = _set([5.0], (phi / np.linalg.norm(phi))[None])
+        mode = replace(mode, shape_std=np.full(2, 1e-3), shape_covariance=C)
+        sets.append(SimpleNamespace(responses=tuple(names), modes=(mode,), pairs=()))
+    data = combine(order.split(), sets).data
+    assert data.modes == (1,)
+    np.testing.assert_allclose(data.shape_std[np.isfinite(data.shape)], 1e-3, rtol=1e-6)
+    at = data.shape[:, 0] * np.sign(data.shape[0, 0][np.isfinite(data.shape[0, 0])][0])
+    ratio = at / [shape[name] for name in data.sensors]
+    assert len({*np.sign(ratio[np.isfinite(ratio)]).tolist()}) == 1

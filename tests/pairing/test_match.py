@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from modefront._typing import Floats
 from modefront.data.modal import modal_data
 from modefront.linalg.small import mac
+from modefront.optim.scalarisation import LogSum
 from modefront.pairing.match import Pairing, mac_slopes, match, mean_mac, modes_needed
 
 
@@ -97,3 +98,28 @@ def test_slopes_of_the_mac_are_those_of_differences() -> None:
         (values(step) - values([-x for x in step])) / (2 * h) for step in ([h, 0.0], [0.0, h])
     ]
     assert mac_slopes(data, pairs, phi, dphi) == pytest.approx(np.transpose(expected), rel=1e-6)
+
+
+def test_the_likelihood_leaves_distant_frequencies_out_however_poor_the_others_are() -> None:
+    data = modal_data(np.array([1.0, 5.0]), np.eye(3)[:2], SENSORS)
+    f, squares = np.array([1.1, 5.2, 20.0, 30.0]), np.ones((1, 2, 4))
+    squares[0, [0, 1], [0, 1]] = 5e4, 6e4
+    found = [
+        match(Pairing(window=window), data, f, np.eye(3, 4), squares, LogSum(np.ones(1), 1.0))
+        for window in (1.3, None)
+    ]
+    assert found[0].index.tolist() == [0, 1]
+    assert found[1].index.tolist() != [0, 1]
+
+
+def test_the_likelihood_pairs_modes_of_which_the_frequency_is_missing() -> None:
+    data = modal_data(np.array([1.0, np.nan, np.nan]), np.eye(3), SENSORS)
+    f, squares = np.array([1.0, 2.0, 3.0]), 1 - np.eye(3)[None]
+    pairs = match(Pairing(), data, f, np.eye(3), squares, LogSum(np.ones(1), 1.0))
+    assert pairs.index.tolist() == [0, 1, 2]
+
+
+def test_a_mode_of_which_nothing_was_measured_takes_any_that_is_left() -> None:
+    shape = np.eye(3)[:2] * [[1.0], [np.nan]]
+    data = modal_data(np.array([1.0, np.nan]), shape, SENSORS)
+    assert match(Pairing(), data, np.array([1.0, 2.0]), np.eye(3)[:, :2]).index.tolist() == [0, 1]

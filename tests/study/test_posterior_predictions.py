@@ -359,3 +359,20 @@ def test_show_tells_the_posterior_beside_the_range(
         assert text.replace("±  ", "×÷ ") in out, text
     assert command("show", folder / "results", "--format", "json") == 0
     assert '"posterior_frf_peak_covariance"' in capsys.readouterr().out
+
+
+@pytest.mark.slow(4)
+def test_what_is_kept_is_not_taken_for_that_of_more_points(tmp_path: Path) -> None:
+    write_example("three-story", tmp_path)
+    study = replace(
+        mf.load(tmp_path / "study.toml"),
+        search=mf.Search(doubt=0.9),
+        identifiability=mf.Identifiability(models=0),
+        noise=mf.NoisePrior(weight=0),
+        predictions=[PeakResponse("peak", "floor3", "floor1", damping=DAMPING)],
+    )
+    coarse, fine = (
+        replace(study, pareto=mf.Pareto(points=3, refined=size)) for size in (None, 0.3)
+    )
+    mf.run(coarse, tmp_path / "results")
+    assert mf.run(fine, tmp_path / "results").dataset.identical(mf.run(fine).dataset)

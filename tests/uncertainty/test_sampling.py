@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, cast
 
@@ -29,6 +30,7 @@ from modefront.uncertainty.sampling import (
     draw_models,
     find_peak,
 )
+from modefront.work.store import Run, Store
 from modefront.work.task import IMMEDIATE, Count, Executor, Task, counted
 
 NU = 4.0
@@ -202,6 +204,17 @@ def test_draws_are_those_of_the_seed(monkeypatch: pytest.MonkeyPatch) -> None:
     assert draws[0].shape == (15, 2)
     assert draws[0].tolist() == draws[1].tolist()
     assert draws[0].tolist() != draws[2].tolist()
+
+
+def test_draws_that_are_kept_are_not_taken_for_more(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("modefront.uncertainty.sampling.ROUND", 10)
+    noise = noise_of(banana, [-2, -2], [2, 3], [2.0])
+    theta = maximum(noise, np.array([0.3, 0.1])).theta
+    for count in (15, 40):
+        kept = draw_models(noise, [theta], count, 3, Run(Store(tmp_path))).theta
+        assert kept.tolist() == draw_models(noise, [theta], count, 3, IMMEDIATE).theta.tolist()
 
 
 def many(theta: Floats) -> Residuals:

@@ -166,6 +166,8 @@ def _like(name: str, value: Floats | None, shape: tuple[int, ...]) -> Floats:
     """Return an array of a shape, of which one set may lack the first axis; NaN for None."""
     if value is None:
         return np.full(shape, np.nan)
+    if np.iscomplexobj(value):
+        raise wrong(name, "real numbers: turn shapes to be as real as they can be", "complex ones")
     array = np.asarray(value, float)
     if array.shape not in (shape, shape[shape[0] == 1 :]):
         of = list(zip(shape, ("sets", "modes", "sensors", "sensors"), strict=False))
@@ -209,7 +211,8 @@ def modal_data(
     Raises
     ------
     InputError
-        If the arrays do not fit together, and for what is no covariance.
+        If the arrays do not fit together, are complex, or have a frequency that is not above 0 or
+        a shape of zeros, and for what is no covariance.
     """
     f = np.atleast_2d(np.asarray(frequency, float))
     phi = _like("shape", shape, (*f.shape, len(sensors)))
@@ -217,6 +220,13 @@ def modal_data(
     f_std = _like("frequency_std", frequency_std, f.shape)
     phi_std = _like("shape_std", shape_std, phi.shape)
     names = sets if sets is not None else tuple(str(k + 1) for k in range(len(f)))
+    silent = np.isfinite(phi).any(axis=2) & ~np.nan_to_num(phi).any(axis=2)
+    checks = (
+        (len(names) != len(f), "sets", f"{len(f)} names", str(len(names))),
+        ((f <= 0).any(), "frequency", "frequencies above 0 Hz", "others"),
+        (silent.any(), "shape", "mode shapes that are not zero at all sensors", "only zeros"),
+    )
+    refuse(Fault("", *said) for is_wrong, *said in checks if is_wrong)
     modes = tuple(range(1, f.shape[1] + 1))
     data = ModalData(names, modes, tuple(sensors), f, zeta, phi, f_std, phi_std)
     return data if shape_covariance is None else data.with_covariance(shape_covariance)

@@ -121,6 +121,8 @@ def read_records(setup: SetFiles) -> Records:
                 raise wrong(path, EXPECTED, "others", f"sensor {name!r}")
             names.append(name)
             rows.append(row)
+    for own in (x for x, name in setup.columns.items() if name not in (*names, SECONDS)):
+        raise wrong(setup.files[0], "a column of the CSV files of the set", repr(own), "columns")
     moving = {name: row for name, row in zip(names, rows, strict=True) if np.ptp(row) > 0}
     if not moving:
         raise wrong(setup.files[0], "a sensor that moves", "none", "records")
@@ -268,21 +270,32 @@ def _from_toml(path: Path) -> ModalTest:
     sets = _set_tables(root, ambient, common)
     root.close()
     refuse(root.faults)
-    setups, sensors = tuple(map(read_records, sets)) if ambient else (), list[str]()
-    for setup in setups:
-        if sensors and set(sensors).isdisjoint(setup.sensors):
-            expected = f"a sensor that another set has: {', '.join(sorted(set(sensors))[:8])}"
-            found = ", ".join(setup.sensors[:8])
-            raise InputError(Fault(root.file, f"[[set]] {setup.name!r}", expected, found))
-        sensors += setup.sensors
+    left, setups = list(map(read_records, sets)) if ambient else [], list[Records]()
+    sensors = list[str]()
+    while left:  # each setup shares sensors with some before it
+        joined = (
+            k for k, x in enumerate(left) if not setups or not {*sensors}.isdisjoint(x.sensors)
+        )
+        if (k := next(joined, None)) is None:
+            expected = f"a sensor that another set has: {', '.join(sorted({*sensors})[:8])}"
+            found = ", ".join(left[0].sensors[:8])
+            raise InputError(Fault(root.file, f"[[set]] {left[0].name!r}", expected, found))
+        setups.append(left.pop(k))
+        sensors += setups[-1].sensors
     data_sets = () if ambient else tuple(_data_set(root, each) for each in sets)
     sensors += [x for each in data_sets for x in each.data.responses]
+    others = [x for each in data_sets for x in each.data.references]
+    known = dict.fromkeys([*sensors, *others, *(x for each in setups for x in each.still)])
+    labels = [named.get(name, name) for name in known]
+    for sensor in (x for x in named if x not in known):
+        expected = "a channel of the files: " + ", ".join(labels[:8])
+        root.fault(f"[sensors] {sensor}", expected, suggestion(named[sensor], labels))
     for place in places:
         if place not in sensors:
             root.fault(f"[geometry] {place}", "a sensor of the files", suggestion(place, sensors))
     refuse(root.faults)
     band, modes = given.get("band"), given.get("modes")
-    return ModalTest(name, band, modes, data_sets, setups, chosen, places)
+    return ModalTest(name, band, modes, data_sets, tuple(setups), chosen, places)
 
 
 def _set_tables(root: opt.Table, ambient: bool, common: SetFiles) -> list[SetFiles]:
@@ -353,11 +366,6 @@ def _data_set(root: opt.Table, known: SetFiles) -> DataSet:
     if names:
         plain = {channel.replace("-", "") for channel in names}
         turned = len(plain & references) > len(plain & responses)
-        labels = sorted(references if turned else responses)
-        expected = "a channel of the files: " + ", ".join(labels[:8])
-        for label in sorted(plain.difference(labels)):
-            root.fault(f"[sensors] {names.get(label, '')}", expected, suggestion(label, labels))
-        refuse(root.faults)
     named = []
     for channel in channels:
         response, sign = channel_name(channel.response, names)

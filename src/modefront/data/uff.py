@@ -234,15 +234,15 @@ def _dof(node: str, direction: str) -> tuple[str, int]:
 def write_uff55(
     path: Path,
     sets: Sequence[str],
-    modes: Sequence[Sequence[tuple[complex, np.ndarray[Any, np.dtype[np.complex128]]]]],
+    modes: Sequence[Mapping[int, tuple[complex, Complexes]]],
     sensors: Sequence[str],
-    pairs: Sequence[Sequence[tuple[int, int]]] = (),
+    pairs: Sequence[tuple[int, int]] = (),
 ) -> None:
     """Write modes as complex eigenvectors of first order, dataset 55 (analysis type 3).
 
-    ``modes`` holds, for every data set, poles in rad/s and complex shapes at the sensors; sensors
-    that are named by node and direction keep both, others have the first numbers that are left, in
-    X. ``pairs`` holds positions of modes of one pole, for every data set; none unless given.
+    ``modes`` holds, for every data set, poles in rad/s and complex shapes at the sensors by the
+    numbers of the modes; sensors that are named by node and direction keep both, others have the
+    first numbers that are left, in X. ``pairs`` holds numbers of modes of one pole.
     """
     matches = [re.fullmatch(r"([0-9]+)([XYZ])", name) for name in sensors]
     taken = {int(match[1]) for match in matches if match}
@@ -251,14 +251,14 @@ def write_uff55(
     axes = ["XYZ".index(match[2]) if match else 0 for match in matches]
     nodes = list(dict.fromkeys(numbers))
     rows = [nodes.index(number) for number in numbers]
-    written = []
-    for name, listed, paired in zip(sets, modes, pairs or [()] * len(sets), strict=True):
-        other = {a + 1: b + 1 for pair in paired for a, b in (pair, pair[::-1])}
-        for number, (pole, phi) in enumerate(listed, start=1):
+    written, other = [], {a: b for pair in pairs for a, b in (pair, pair[::-1])}
+    for name, listed in zip(sets, modes, strict=True):
+        for number, (pole, phi) in listed.items():
             values = np.zeros((len(nodes), 3), complex)
             values[rows, axes] = phi
             frequency = f"mode {number}, {abs(pole) / (2 * np.pi):.9g} Hz"
-            frequency += f", pair with mode {other[number]}" if number in other else ""
+            if (partner := other.get(number)) in listed:
+                frequency += f", pair with mode {partner}"
             texts = (f"set {name}"[:79], frequency, ", ".join(sensors)[:79] or "NONE")
             parameters = (pole.real, pole.imag, 0.0, 0.0, 0.0, 0.0)
             content = dataset_55(texts, number, parameters, nodes, values)
@@ -321,8 +321,12 @@ class NodalModes:
         return np.asarray(self.shape[:, :, node, used] @ direction[used])
 
     def at(self, sensors: Mapping[str, tuple[int, Floats]]) -> ModalData:
-        """Return the modal data of sensors, each a position among the nodes and a vector (6,)."""
+        """Return the modal data of sensors, each a position among the nodes and a vector (6,).
+
+        Of a mode that does not move them, there is no shape.
+        """
         shape = np.stack([self.along(*place) for place in sensors.values()], axis=-1)
+        shape[~np.nan_to_num(shape).any(axis=2)] = np.nan
         std = np.full(shape.shape, np.nan)
         return replace(self.data, sensors=tuple(sensors), shape=shape, shape_std=std)
 

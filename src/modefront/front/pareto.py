@@ -26,7 +26,7 @@ from modefront.optim.lexicographic import EXACT, TIE
 from modefront.optim.problem import DISTINCT, Problem
 from modefront.optim.scalarisation import LogSum
 from modefront.optim.sqp import TIGHT, Solution, solve
-from modefront.work.task import IMMEDIATE, Executor, Key, Task, seed_sequence
+from modefront.work.task import IMMEDIATE, Executor, Key, Task, Within, seed_sequence
 
 ANCHORS = ("edge", "weights", "others")  # kinds of subproblems that are no points between edges
 
@@ -276,6 +276,8 @@ class _Run:
                     new.append(tuple((middle // np.gcd.reduce(middle)).tolist()))
             if not new:
                 break
+            # What follows is another repetition of what an earlier run may have kept without it.
+            self.state.work = Within(self.work, ("refined", repr(size)))
             yield new
 
     def _weighted(self) -> list[Point]:

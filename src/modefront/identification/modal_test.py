@@ -104,15 +104,15 @@ class IdentifiedTest(Shown):
         path = writable(path)
         written = [path]
         if path.suffix.lower() == ".uff":
-            sensors, modes = self.data.sensors, list[list[tuple[complex, Complexes]]]()
-            for each in self.identified:
+            sensors, modes = self.data.sensors, list[dict[int, tuple[complex, Complexes]]]()
+            for each, of_set in zip(self.identified, self.modes.index, strict=True):
                 at = [sensors.index(name) for name in each.responses]
-                shapes = np.zeros((len(each.modes), len(sensors)), complex)
-                for shape, mode in zip(shapes, each.modes, strict=True):
-                    shape[at] = mode.shape.complex_shape
-                modes.append(list(zip([mode.pole for mode in each.modes], shapes, strict=True)))
-            pairs = [each.pairs for each in self.identified]
-            write_uff55(path, self.names, modes, sensors, pairs)
+                modes.append({})
+                for number, k in ((r, k) for r, k in enumerate(of_set, 1) if k >= 0):
+                    shape = np.zeros(len(sensors), complex)
+                    shape[at] = each.modes[k].shape.complex_shape
+                    modes[-1][number] = each.modes[k].pole, shape
+            write_uff55(path, self.names, modes, sensors, self.data.pairs)
         else:
             sensors = self.data.sensors
             clashing = [name for name in sensors if is_reserved(name, sensors)]

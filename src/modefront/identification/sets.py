@@ -108,6 +108,17 @@ def between(x: Floats, std: Floats) -> float:
     return float(np.sqrt((Q - freedom) / (weight.sum() - np.sum(weight**2) / weight.sum())))
 
 
+def joined(sets: Sequence[Sequence[object]]) -> list[int]:
+    """Return an order of sets of sensors: each shares some with those before it where one does."""
+    left, out, known = [*range(len(sets))], list[int](), set[object]()
+    while left:
+        k = next((k for k in left if not known.isdisjoint(sets[k])), left[0])
+        left.remove(k)
+        out.append(k)
+        known |= {*sets[k]}
+    return out
+
+
 ModesOfSet = tuple[Sequence[str], Sequence[ModeEstimate]]  # sensors and modes of one set
 
 
@@ -118,7 +129,8 @@ def mode_groups(sets: Sequence[ModesOfSet], least: float = LEAST_MAC) -> list[di
     the greatest sum of their squared correlations. Shapes have a MAC of ``least`` or more.
     """
     groups: list[dict[int, int]] = []
-    for k, own in enumerate(sets):
+    for k in joined([names for names, _ in sets]):
+        own = sets[k]
         score = np.zeros((len(own[1]), len(groups)))
         for r, g in np.ndindex(score.shape):
             score[r, g] = max(_agreement(own, r, sets[j], s, least) for j, s in groups[g].items())
@@ -187,12 +199,13 @@ def _apart(modes: Sequence[ModeEstimate], places: Sequence[Sequence[int]]) -> fl
 def _shapes(phi: Floats, std: Floats) -> tuple[Floats, Floats]:
     """Return shapes in the sign of the first set, and deviations with the spread of the sets."""
     having = np.flatnonzero(np.isfinite(phi).any(axis=1))
-    first, factor = phi[having[0]], np.ones((len(phi), 1))
-    for k in having[1:]:
-        both = np.isfinite(first) & np.isfinite(phi[k])
-        if both.any() and np.any(phi[k][both]):
-            own = phi[k][both]
-            factor[k] = float(own @ first[both]) / float(own @ own) or 1.0
+    known, factor = np.full(phi.shape[1], np.nan), np.ones((len(phi), 1))
+    for k in having[joined([np.flatnonzero(np.isfinite(x)).tolist() for x in phi[having]])]:
+        both = np.isfinite(known) & np.isfinite(phi[k])
+        own = phi[k][both]
+        if own.any():
+            factor[k] = float(own @ known[both]) / float(own @ own) or 1.0
+        known = np.where(np.isfinite(known), known, factor[k] * phi[k])
     scaled, size = phi * factor, np.abs(factor)
     tau = np.array([between(*x) for x in zip(scaled.T, (std * size).T, strict=True)])
     return phi * np.sign(factor), np.hypot(std, tau / size)

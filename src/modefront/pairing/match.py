@@ -93,12 +93,13 @@ def match(
         distance, outside = np.abs(np.log(ratio)), np.zeros((m, q))
     if pairing.window is not None:
         outside = np.where(distance > np.log(pairing.window), OUTSIDE, 0.0)
-    cost = np.where(np.isnan(values), distance, 1 - values)
+    cost = np.nan_to_num(np.where(np.isnan(values), distance, 1 - values))
     index = assigned(cost + outside)
     if squares is not None and likelihood is not None:
         silent = np.asarray(~squares.any(axis=(0, 2)))[:, None]
         rest = np.where(silent, cost, 0.0)
-        found, starts = [], [index, assigned(distance + outside)]
+        nearest = np.where(np.isnan(distance), cost, distance)
+        found, starts = [], [index, assigned(nearest + outside)]
         for index in starts[: 1 + (starts[0] != starts[1]).any()]:
             value = np.inf
             while True:
@@ -107,7 +108,8 @@ def match(
                     break
                 value, kept = now, index
                 w = likelihood.gradient(J)
-                index = assigned(np.tensordot(w, squares, axes=1) + rest + w.max() * outside)
+                total = np.tensordot(w, squares, axes=1) + rest
+                index = assigned(total + total.max() * outside)
             found.append((value, kept))
         index = min(found, key=lambda x: x[0])[1]
     return Pairs(index, values[np.arange(m), index])

@@ -191,7 +191,7 @@ def _parts(study: Study, evaluations: float) -> dict[str, tuple[Span, str]]:
     n, pareto, points = len(study.problem.groups), study.pareto, _points(study)
     edges, budget = n + len(study.weighted) + 1, EDGES * study.search.evaluations / evaluations
     # The starts after which the rate of gains is the doubt, where none has gained, and where two.
-    few, many = ((gains + 1) / study.search.doubt - 2 for gains in (0, 2))
+    few, many = (max((gains + 1) / study.search.doubt - 2, 1.0) for gains in (0, 2))
     text = f"fewer evaluations of the search ([search] evaluations, now {study.search.evaluations})"
     out = {"edges": ((float(min(few * edges, budget)), float(min(many * edges, budget))), text)}
     if pareto.method in ("nbi", "weights"):

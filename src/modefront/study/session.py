@@ -28,6 +28,7 @@ from modefront.front.pareto import pareto_front
 from modefront.front.point import Kind, Point, of_kind
 from modefront.identifiability.combinations import superfluous, unchanged_groups
 from modefront.inputs import wrong
+from modefront.models.base import is_reduced
 from modefront.optim.sqp import given
 from modefront.outputs import remove_unfinished, write_text
 from modefront.residuals.problem import UpdatingProblem
@@ -44,7 +45,7 @@ from modefront.uncertainty.inference import infer, most_probable
 from modefront.uncertainty.sampling import DRAWS
 from modefront.work.progress import Progress
 from modefront.work.store import FOLDER, NOTE, Run, Store, locked
-from modefront.work.task import Task
+from modefront.work.task import Executor, Task, Within
 from modefront.work.workers import Workers, backend
 
 
@@ -188,34 +189,35 @@ def worked(study: Study, work: Run) -> Dataset:
     weighted = [(each.name, each.of(problem.objectives)) for each in study.weighted]
     of_search: dict[str, Any] = {"seed": seed, "search": study.search, "given": weighted}
     search = partial(pareto_front, problem, problem.properties, study.pareto, **of_search)
-    front = certified_front(problem, search, work)
+    # What follows from the points of a refined front, snapshots included, is another repetition.
+    refined = study.pareto.refined
+    again: Executor = work if refined is None else Within(work, ("refined", repr(refined)))
+    front = certified_front(problem, search, again if is_reduced(problem.model) else work)
     noise = study.noise.of(problem, study.uncertainty.of(problem.data))
     inference = None
     if noise is not None:
         minima = [x for edge in front.edges for x in edge.minima]
         known = [x.theta for x in (*(point.solution for point in front.points), *minima)]
         find = partial(most_probable, problem, noise)
-        maxima = certified_best(problem, find, known, work)
+        maxima = certified_best(problem, find, known, again)
         front = replace(front, points=[*front.points, Point(Kind.MOST_PROBABLE, maxima[0])])
         draws = max(DRAWS, study.uncertainty.draws)
         along = [x.solution.theta for x in of_kind(front.points, Kind.FRONT)]
-        inference = infer(noise, [x.theta for x in maxima], along, draws, seed, work)
+        inference = infer(noise, [x.theta for x in maxima], along, draws, seed, again)
     options = study.pareto, study.identifiability, study.uncertainty
-    analysis = analyse_front(problem, front, *options, seed, work)
+    analysis = analyse_front(problem, front, *options, seed, again)
     (nominal,) = work.run([Task(("nominal",), problem.evaluate, (problem.start,))])
     more = [*analysis.identifiable.points, Point(Kind.NOMINAL, given(nominal))]
-    certify(problem, [point.solution for point in more], work)
+    certify(problem, [point.solution for point in more], again)
     data = dataset(problem, replace(front, points=[*front.points, *more]), analysis)
     theta, paired = data["theta"].values, data["paired_mode"].values
-    # A refined front has further points: what is kept is that of the points before.
-    mark = hashlib.sha256(theta.tobytes() + paired.tobytes()).hexdigest()[:16]
-    (shapes,) = work.run([Task(("shapes", mark), mode_shapes, (problem, theta, paired))])
+    (shapes,) = again.run([Task(("shapes",), mode_shapes, (problem, theta, paired))])
     data = with_mode_shapes(data, problem, shapes)
     gaussian, drawn = analysis.posterior, None
     if noise is not None and inference is not None:
         data = with_intervals(data, noise, inference)
         gaussian, drawn = inference.gaussian(problem.upper - problem.lower), inference.draws.theta
-    runner = PredictionRunner(problem, study.predictions, seed, work, study.file)
+    runner = PredictionRunner(problem, study.predictions, seed, again, study.file)
     draws = study.uncertainty.draws
     data = with_predictions(data, runner, study.slack, gaussian, draws, drawn)
     spare = superfluous(problem, nominal) if nominal.feasible else ()

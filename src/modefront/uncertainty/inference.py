@@ -28,7 +28,6 @@ from modefront.uncertainty.prior import NoiseModel
 from modefront.uncertainty.sampling import Draws, draw_models
 from modefront.uncertainty.scatter import Posterior
 from modefront.work.codec import record
-from modefront.work.store import hash_text
 from modefront.work.task import Executor, Task
 
 CHANCE = 0.01  # probability that a fixed parameter, bound or model is blamed wrongly
@@ -153,8 +152,7 @@ def infer(
     The models (p,) of the ``front`` are compared with what is expected, too.
     """
     theta = maxima[0]
-    mark = hash_text(f"{[x.tolist() for x in front]}")[:8]
-    (along,) = work.run([Task(("most-probable", "front", mark), _misfits, (noise, front))])
+    (along,) = work.run([Task(("most-probable", "front"), _misfits, (noise, front))])
     (fit,) = work.run([Task(("most-probable", "fit"), _fit, (noise, theta))])
     (free,) = work.run([Task(("most-probable", "freed"), freed, (noise, theta))])
     # One round where the model cannot be used.

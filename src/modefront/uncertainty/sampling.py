@@ -325,7 +325,8 @@ def _counted(noise: NoiseModel, near: NoiseModel, z: Floats, work: Executor) -> 
     Each is there as often as its weight says.
     """
     some = enumerate(np.array_split(z, CHAINS))
-    parts = work.run([Task(("draws", k + 1), _weighed, (noise, near, x)) for k, x in some])
+    key = "draws", len(z)
+    parts = work.run([Task((*key, k + 1), _weighed, (noise, near, x)) for k, x in some])
     theta, frequency, mac, weight = (np.concatenate(x) for x in zip(*parts, strict=True))
     w = softmax(weight)
     # of equal weights, each draw once

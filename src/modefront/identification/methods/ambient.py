@@ -426,7 +426,10 @@ def _combined(
     count: int | None,
 ) -> Identification:
     """Return the modes of the structure, and what is none."""
-    modes, sensors = [], tuple(dict.fromkeys(x for each in setups for x in each.records.sensors))
+    found, sensors = (
+        list[tuple[ModeEstimate, bool]](),
+        tuple(dict.fromkeys(x for each in setups for x in each.records.sensors)),
+    )
     sines = np.sort([omega for x in setups for omega in x.lines.sines]) / (2 * np.pi)
     apart = np.diff(sines, prepend=-np.inf) > max(1 / x.records.duration for x in setups)
     text = "a harmonic: its lines are those of a sine"
@@ -439,7 +442,8 @@ def _combined(
         gain = sum(local.gain for _, local in having) - misfit
         gain /= float(chdtri(freedom, FALSE / lines))
         mode = _judged(having, mode, len(setups), gain)
-        if not any(local.held for _, local in having):
+        held = any(local.held for _, local in having)
+        if not held:
             why = _harmonic(having)
             if len(having) == 1 < len(setups):
                 why = "none of the other setups has it, where its pole was tried"
@@ -448,15 +452,18 @@ def _combined(
         if why:
             rejected.append(Rejected(mode.frequency, mode.damping, why))
         else:
+            found.append((mode, held))
+    modes, text = list[ModeEstimate](), "weaker than the modes asked for"
+    for k, (mode, held) in enumerate(sorted(found, key=lambda each: -each[0].gain)):
+        if held or k < (count or len(found)):
             modes.append(mode)
-    modes.sort(key=lambda mode: -mode.gain)
-    weak, text = modes[count:] if count else [], "weaker than the modes asked for"
-    rejected += [Rejected(mode.frequency, mode.damping, text) for mode in weak]
+        else:
+            rejected.append(Rejected(mode.frequency, mode.damping, text))
     first, data = max(setups, key=lambda x: len(x.records.sensors)), _densities(setups, sensors)
     return Identification(
         sensors,
         band,
-        tuple(sorted(modes[:count], key=lambda mode: mode.frequency)),
+        tuple(sorted(modes, key=lambda mode: mode.frequency)),
         tuple(sorted(rejected, key=lambda pole: pole.frequency)),
         first.diagram,
         data,
