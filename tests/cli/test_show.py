@@ -115,6 +115,17 @@ def test_no_deviation_is_shown_of_what_no_data_determine(
     assert "±" not in line
 
 
+def test_a_frequency_that_was_not_measured_is_none(
+    two: xr.Dataset, capsys: pytest.CaptureFixture[str]
+) -> None:
+    measured = two["measured_frequency"].copy()
+    measured[1] = np.nan
+    print_results(two.assign(measured_frequency=measured), list(LISTS))
+    out = capsys.readouterr().out
+    assert "measured:" in out
+    assert "nan" not in out
+
+
 def test_pairs_that_change_on_a_lattice_are_said_once(three: xr.Dataset) -> None:
     paired = three["paired_mode"].values.copy()
     front = np.flatnonzero(three["kind"].values == "front")

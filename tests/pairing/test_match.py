@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from modefront._typing import Floats
 from modefront.data.modal import modal_data
 from modefront.linalg.small import mac
+from modefront.optim.scalarisation import LogSum
 from modefront.pairing.match import Pairing, mac_slopes, match, mean_mac, modes_needed
 
 
@@ -52,6 +53,16 @@ def test_a_frequency_without_shape_takes_the_nearest_mode() -> None:
     assert pairs.index.tolist() == [1, 0]
     assert pairs.mac[0] == pytest.approx(1)
     assert np.isnan(pairs.mac[1])
+
+
+def test_a_shape_without_frequency_is_paired_by_likelihood_too() -> None:
+    data = modal_data(np.array([1.0, np.nan]), np.eye(3)[:2], SENSORS)
+    squares = np.array([[[0.0, 4.0, 4.0], [4.0, 4.0, 0.0]]])  # of one group
+    one = np.ones(1)
+    f, phi = np.array([1.0, 2.0, 3.0]), np.eye(3)[:, [0, 2, 1]]
+    for window in (None, 1.5):
+        pairs = match(Pairing(window=window), data, f, phi, squares, LogSum(one, one))
+        assert pairs.index.tolist() == [0, 2]
 
 
 def test_the_window_keeps_distant_frequencies_out() -> None:

@@ -98,7 +98,8 @@ def match(
     if squares is not None and likelihood is not None:
         silent = np.asarray(~squares.any(axis=(0, 2)))[:, None]
         rest = np.where(silent, cost, 0.0)
-        found, starts = [], [index, assigned(distance + outside)]
+        by_frequency = np.where(np.isnan(distance), cost, distance)
+        found, starts = [], [index, assigned(by_frequency + outside)]
         for index in starts[: 1 + (starts[0] != starts[1]).any()]:
             value = np.inf
             while True:
