@@ -243,7 +243,7 @@ def _scaled(of_all: Callable[[], Sequence[Members]], scales: Mapping[str, Floats
 def of_free(model: Model, parameters: Sequence[Parameter]) -> tuple[Model, tuple[Parameter, ...]]:
     """Return a model as a function of the free ones of its parameters, and these.
 
-    Raises InputError for wrong ties, and where others are held and the model is not one of matrices.
+    Raises InputError for wrong ties, and where any is held and the model is not one of matrices.
     """
     refuse(wrong_ties("parameters", parameters))
     fixed = {each.name: each.nominal for each in parameters if each.fixed}
