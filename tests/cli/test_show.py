@@ -254,6 +254,15 @@ def test_the_first_screen_is_a_screen(
     assert all(f"stiffness of storey {j} " in words for j in range(parameters))
 
 
+def test_a_comparison_says_which_reference_is_not_to_be_used(
+    two: xr.Dataset, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    of = {"one": two, "other": two.assign_attrs(reference="")}
+    monkeypatch.setattr("modefront.results.compare.read_together", lambda _: list(of.items()))
+    named = mf.compare(list(of)).rows["reference model"]
+    assert named == [two.attrs["reference"], "most-probable, not to be used"]
+
+
 def test_a_comparison_of_many_parameters_is_cut_with_a_word_on_the_rest(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
