@@ -124,6 +124,8 @@ def test_modes_are_chosen_by_hand(tmp_path: Path) -> None:
     assert "left out by hand" in [x["reason"] for x in report["sets"][0]["rejected"]]
     with pytest.raises(InputError, match="numbers of modes, from 1 to 3"):
         _invoke(test, "-o", output, "--drop", "9")
+    with pytest.raises(UnfinishedError, match="--drop left no mode"):
+        _invoke(test, "-o", output, "--drop", "1,2,3")
     with pytest.raises(InputError, match="frequencies of the lines, 1 to 25 Hz, found 900"):
         _invoke(test, "-o", output, "--seed", "900")
 

@@ -115,6 +115,17 @@ def test_no_deviation_is_shown_of_what_no_data_determine(
     assert "±" not in line
 
 
+def test_a_frequency_that_was_not_measured_is_none(
+    two: xr.Dataset, capsys: pytest.CaptureFixture[str]
+) -> None:
+    measured = two["measured_frequency"].copy()
+    measured[1] = np.nan
+    print_results(two.assign(measured_frequency=measured), list(LISTS))
+    out = capsys.readouterr().out
+    assert "measured:" in out
+    assert "nan" not in out
+
+
 def test_pairs_that_change_on_a_lattice_are_said_once(three: xr.Dataset) -> None:
     paired = three["paired_mode"].values.copy()
     front = np.flatnonzero(three["kind"].values == "front")
@@ -241,6 +252,15 @@ def test_the_first_screen_is_a_screen(
     print_results(data, ["models"])
     words = " ".join(capsys.readouterr().out.split())
     assert all(f"stiffness of storey {j} " in words for j in range(parameters))
+
+
+def test_a_comparison_says_which_reference_is_not_to_be_used(
+    two: xr.Dataset, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    of = {"one": two, "other": two.assign_attrs(reference="")}
+    monkeypatch.setattr("modefront.results.compare.read_together", lambda _: list(of.items()))
+    named = mf.compare(list(of)).rows["reference model"]
+    assert named == [two.attrs["reference"], "most-probable, not to be used"]
 
 
 def test_a_comparison_of_many_parameters_is_cut_with_a_word_on_the_rest(

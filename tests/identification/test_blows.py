@@ -108,6 +108,18 @@ def test_records_in_universal_files_are_grouped_into_blows(tmp_path: Path) -> No
     assert modes[0].shape.shape @ three_story_shapes()[0] != pytest.approx(0, abs=0.1)
 
 
+def test_times_may_have_few_digits(tmp_path: Path) -> None:
+    files, references = _blows(tmp_path)
+    data = []
+    for digits in (9, 3):
+        for file in files:
+            time, *values = np.loadtxt(tmp_path / file, delimiter=",", skiprows=1).T
+            _csv(tmp_path / file, np.round(time, digits), values[0], np.array(values[1:]))
+        data.append(read_test(_test_file(tmp_path, files, references, "")).sets[0].data)
+    assert data[1].H == pytest.approx(data[0].H, rel=1e-6)
+    assert data[1].frequency == pytest.approx(data[0].frequency, rel=1e-3)
+
+
 def test_a_dead_response_is_left_out(tmp_path: Path) -> None:
     files, references = _blows(tmp_path)
     for file in files:
@@ -150,7 +162,10 @@ def test_responses_that_are_cut_off_are_said(tmp_path: Path) -> None:
     ("change", "message"),
     [
         (("time,force", "time,strength"), r"column 'force': expected the record of the force"),
-        (("\n0.0078125,", "\n0.01,"), "expected a time axis of even steps"),
+        (
+            ("\n0.0078125,", "\n0.012,"),
+            r"even steps, found times off by up to 0.0\d+ s, steps of 0.0078",
+        ),
         (("floor1", "floor2"), "column 'floor2': expected each column once"),
         (("time,force,floor1,floor2,floor3", "time,force,floor1,floor2"), "expected 4 fields"),
     ],

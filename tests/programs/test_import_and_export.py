@@ -112,6 +112,21 @@ def test_an_imported_study_needs_data_and_sensors_only(small: Path) -> None:
     assert estimate(study.problem) == pytest.approx([1.2, 0.8], rel=1e-6)
 
 
+def test_the_sensor_that_is_proposed_can_move(tmp_path: Path) -> None:
+    for name, values in {"base": {}, "E": {"E": 2.0}}.items():
+        K, M = (A[:14, :14] for A in structure(**values))  # the last node is held along z
+        write_opensees(tmp_path / name, K, M, labels()[:14])
+    runs = "opensees", tmp_path / "base", "--parameter", f"E={tmp_path / 'E'}"
+    result = modefront("import", *runs, "-o", tmp_path / "study")
+    assert result.exit_code == 0, result.output
+    study = tmp_path / "study" / "study.toml"
+    text, count = re.subn(r"^# (?=\[|file|a =)", "", study.read_text(), flags=re.MULTILINE)
+    assert count == 4
+    study.write_text(text)
+    (study.parent / "modes.csv").write_text("mode,frequency,a\n1,2.0,1.0\n")
+    assert load(study).problem.model.sensors == ("a",)
+
+
 @pytest.mark.parametrize(
     ("deck", "text"),
     [

@@ -28,7 +28,12 @@ CONTRADICTIONS = [
     ),
     ('"mobility"', '"absolute accelerance"', "quantity: ... where forces act, found 'absolute acc"),
     ("modes = 2", "modes = 3", "modes: expected a whole number from 1 to 2, found 3"),
-    ("modes = 2", "modes = 1", "modes: ... reach the end of the band, 15 Hz: 2, found 1, up to 4."),
+    ("modes = 2", "modes = 1", "modes: ... up to the end of the band, 15 Hz: 2, found 1, up to 4."),
+    (
+        'damping = "measured"\nmodes = 2',
+        "damping = [0.01]",
+        "('peak') damping: ... up to the end of the band, 15 Hz: 2, found 1, up to 4.",
+    ),
     ("modes = 2", "modes = 2\nmode = 2", "('peak'): ... found 'mode' (did you mean 'modes'?)"),
     (
         'damping = "measured"',

@@ -130,6 +130,7 @@ shape = "all"
     [
         ('tie = "k3"', "'k2' tie: expected the name of a parameter that is neither fixed nor tied"),
         ('tie = "k2"', "'k2' tie: expected the name of a parameter that is neither fixed nor tied"),
+        ('tie = "k1"\nprior = { std = 0.1 }', "prior: expected none beside the tie to 'k1'"),
         ('tie = "k1"\nfixed = true', "expected no 'tie' of a parameter that is fixed"),
         ("fixed = 1", "fixed: expected true or false"),
         ('prior = { kind = "gamma" }', "expected one of 'normal', 'lognormal'"),
@@ -141,6 +142,34 @@ def test_what_contradicts_is_refused(more: str, says: str, tmp_path: Path) -> No
     (tmp_path / "study.toml").write_text(STUDY.format(more=more))
     with pytest.raises(InputError) as raised:
         mf.load(tmp_path / "study.toml")
+    assert says in str(raised.value)
+
+
+def test_a_parameter_begins_where_the_one_does_to_which_it_is_tied(tmp_path: Path) -> None:
+    (tmp_path / "modes.csv").write_text("set,mode,frequency,damping,a,b\n1,1,3.0,,0.6,1.0\n")
+    text = STUDY.format(more='tie = "k1"').replace("nominal = 1.0", "nominal = 1.5", 1)
+    (tmp_path / "study.toml").write_text(text)
+    with pytest.raises(InputError) as raised:
+        mf.load(tmp_path / "study.toml")
+    says = "[[parameter]] 'k2' nominal: expected 1.5 as of 'k1', to which it is tied, found 1"
+    assert str(raised.value).endswith(says)
+
+
+@pytest.mark.parametrize(
+    ("ties", "says"),
+    [
+        (("", "k9", ""), "parameters 'k2' tie: expected the name of a parameter that is neither"),
+        (("", "k2", ""), "parameters 'k2' tie: expected the name of a parameter that is neither"),
+        (("", "k3", "k1"), "parameters 'k2' tie: expected the name of a parameter that is neither"),
+        (("k2", "k3", "k1"), "parameters: expected one that is neither fixed nor tied, found none"),
+    ],
+)
+def test_python_refuses_the_ties_that_a_study_file_may_not_have(
+    ties: tuple[str, str, str], says: str
+) -> None:
+    known = [parameter(f"k{k}", tie=tie) for k, tie in enumerate(ties, 1)]
+    with pytest.raises(InputError) as raised:
+        mf.updating_problem(MODEL, data(TRUE, 3), GROUPS, parameters=known)
     assert says in str(raised.value)
 
 

@@ -51,7 +51,8 @@ def run_identify(
     for file in written:
         say(f"wrote {file}")
     if not found:
-        raise UnfinishedError("no mode was found in the band: is it right? --seed places modes")
+        why = "no mode was found in the band: is it right? --seed places modes"
+        raise UnfinishedError("--drop left no mode" if chosen["drop"] else why)
     if report is None and figures is None:
         said = ["--band", *(f"{x:.15g}" for x in band)] if band else []
         for key, numbers in chosen.items():

@@ -199,7 +199,7 @@ def print_points(screen: Screen, data: Dataset) -> None:
     _print(screen, data, "models: * Pareto optimal among these, ! not converged", columns, marks)
     measured = data["measured_frequency"].values
     error = np.round(100 * (data["frequency"].values / measured - 1), 2) + 0.0
-    title = f"frequencies in Hz and MAC; measured: {', '.join(f'{x:.4g}' for x in measured)}"
+    title = f"frequencies in Hz and MAC; measured: {', '.join(number(x, '.4g') for x in measured)}"
     of_modes = [("error f{} %", error, "+.2f"), ("MAC {}", "mac", ".4f")]
     _print(screen, data, title, [("f{}", "frequency", ".4g"), *of_modes])
     if "certified" in data:

@@ -32,7 +32,8 @@ EXPONENTIAL = Requirement(
     lambda value: np.inf if value == "none" else float(value),
 )
 
-EVEN = 1e-3  # relative difference within which steps of time are even: files hold few digits
+EVEN = 1e-3  # relative difference within which rates and durations are equal: files hold few digits
+ROUNDED = 0.3  # of a step by which digits may move a sample in time
 SECOND = 0.1  # force of a second hit over that of the first
 SAME = 1e-9  # difference of two samples, over the greatest, that is none: converters have 24 bits
 TAPER = 0.1  # share of the force window over which it falls to zero
@@ -203,6 +204,17 @@ def blows_of(records: Iterable[Channel]) -> list[Blow]:
     return [group for group in groups if FORCE in group and len(group) > 1]
 
 
+def unevenness(time: Floats) -> str:
+    """Return in words how a time axis is not even but for its digits; empty where it is."""
+    count, length = len(time) - 1, float(time[-1] - time[0])
+    if count < 2 or not length > 0:  # nor where the column is empty
+        return "others"
+    off = np.abs(time - time[0] - np.arange(count + 1) * (length / count)).max()
+    if off <= ROUNDED * length / count:
+        return ""
+    return f"times off by up to {off:.3g} s, steps of {length / count:.3g} s"
+
+
 def averaged(blows: Sequence[Blow], windows: Windows) -> tuple[list[Channel], list[str], float]:
     """Return the functions of all references, warnings, and the decay of the window in 1/s.
 
@@ -214,7 +226,7 @@ def averaged(blows: Sequence[Blow], windows: Windows) -> tuple[list[Channel], li
         force, t = blow[FORCE], blow[FORCE].frequency
         responses = [name for name in blow if name != FORCE]
         groups.setdefault((force.reference, *responses), []).append(blow)
-        steps, quantities = np.diff(t), {blow[name].quantity for name in responses}
+        quantities = {blow[name].quantity for name in responses}
         short = [record for record in blow.values() if len(record.H) != len(force.H)]
         if short:
             expected = f"{len(force.H)} samples, as the force of {force.place}"
@@ -222,8 +234,8 @@ def averaged(blows: Sequence[Blow], windows: Windows) -> tuple[list[Channel], li
         elif len(quantities) > 1:
             found = ", ".join(sorted(each or "others" for each in quantities))
             faults.append(force.fault("responses of one quantity", found))
-        elif len(steps) < 2 or not steps.min() > 0 or np.ptp(steps) > EVEN * steps.mean():
-            faults.append(force.fault("a time axis of even steps", "another"))
+        elif uneven := unevenness(t):
+            faults.append(force.fault("a time axis of even steps", uneven))
         elif len(t) != len(time) or abs(np.ptp(t) / np.ptp(time) - 1) > EVEN:
             here, there = (f"{len(x)} samples over {np.ptp(x):.6g} s" for x in (t, time))
             expected = f"records of {there}, as in {blows[0][FORCE].file}"

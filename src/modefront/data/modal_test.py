@@ -14,7 +14,7 @@ import numpy as np
 from modefront import options as opt
 from modefront._typing import Floats
 from modefront.data.csv import COLUMNS, SECONDS, read_numbers, read_test_csv, renamed
-from modefront.data.impact import EVEN, Blow, Windows, averaged, blows_of
+from modefront.data.impact import EVEN, Blow, Windows, averaged, blows_of, unevenness
 from modefront.data.responses import EXPECTED, FRF, ORDERS, TIME, Channel, DataSet, assemble
 from modefront.data.uff import is_universal, read_functions, read_uff
 from modefront.errors import Fault, InputError, noted, refuse, suggestion
@@ -194,15 +194,10 @@ def _of_array(path: Path, setup: SetFiles) -> tuple[Sequence[str], Floats, float
 
 def _rate(path: Path, time: Floats) -> float:
     """Return the samples per second of a time axis that is even but for its digits."""
-    count, length = len(time) - 1, float(time[-1] - time[0])
-    if count < 2 or not length > 0:  # nor where the column is empty
-        raise wrong(path, "ascending times", "others", "time")
-    # Digits of times may move a sample by a part of a step.
-    off = np.abs(time - time[0] - np.arange(count + 1) * (length / count)).max()
-    if off > 0.3 * length / count:
-        found = f"times off by up to {off:.3g} s, steps of {length / count:.3g} s"
+    if found := unevenness(time):
         raise wrong(path, "a time axis of even steps", found, "time")
-    return float(f"{count / length:.12g}")  # products of steps and numbers have rounding
+    # Products of steps and numbers have rounding.
+    return float(f"{(len(time) - 1) / float(time[-1] - time[0]):.12g}")
 
 
 @dataclass(frozen=True)

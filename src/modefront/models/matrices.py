@@ -19,7 +19,14 @@ from modefront.linalg.factorisation import Pencil, SingularMatrixError, pencil
 from modefront.linalg.products import gram
 from modefront.models.base import LoadCase, Model, NamedWeights, Transfer, passed_on
 from modefront.models.geometry import Geometry
-from modefront.models.parameters import BASE, Parameter, exponents_of, form_of, term_exponents
+from modefront.models.parameters import (
+    BASE,
+    Parameter,
+    exponents_of,
+    form_of,
+    term_exponents,
+    wrong_ties,
+)
 from modefront.modes import dense, sparse
 from modefront.modes.result import FullModes, Modes
 from modefront.options import NUMBER, WHOLE, any_of, array, whole
@@ -236,8 +243,9 @@ def _scaled(of_all: Callable[[], Sequence[Members]], scales: Mapping[str, Floats
 def of_free(model: Model, parameters: Sequence[Parameter]) -> tuple[Model, tuple[Parameter, ...]]:
     """Return a model as a function of the free ones of its parameters, and these.
 
-    Raises InputError where others are held and the model is not one of matrices.
+    Raises InputError for wrong ties, and where any is held and the model is not one of matrices.
     """
+    refuse(wrong_ties("parameters", parameters))
     fixed = {each.name: each.nominal for each in parameters if each.fixed}
     tied = {each.name: each.tie for each in parameters if each.tie}
     if not fixed and not tied:

@@ -7,7 +7,7 @@ stands for the parameter, whatever characters are in it.
 """
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated, Any, Literal
 
@@ -50,7 +50,8 @@ class Parameter(Shown):
     bounds : lower and upper bound, finite, in the same unit
     prior : what is expected of it; None for any value within the bounds
     fixed : whether it stays at its nominal value
-    tie : name of the parameter whose value it has; empty for a value of its own
+    tie : name of the parameter whose value it has, within the bounds of that one; empty for a value
+        of its own
     """
 
     name: Annotated[str, options.text("the name of the parameter")]
@@ -69,6 +70,8 @@ class Parameter(Shown):
             raise wrong("bounds", "a lower bound above 0, as the prior is lognormal", self.lower)
         if self.fixed and self.tie:
             raise wrong("tie", "no 'tie' of a parameter that is fixed", f"'{self.tie}'")
+        if self.tie and self.prior:
+            raise wrong("prior", f"none beside the tie to '{self.tie}'", self.prior.kind)
 
     @property
     def free(self) -> bool:
@@ -111,6 +114,21 @@ def in_order(parameters: Sequence[Parameter], names: Sequence[str]) -> list[Para
     twice = options.each_once("parameters", [parameter.name for parameter in parameters])
     refuse([*twice, *(Fault("", "parameters", f"one called '{x}'", "none") for x in missing)])
     return [given[name] for name in names]
+
+
+def wrong_ties(where: str, parameters: Sequence[Parameter]) -> Iterator[Fault]:
+    """Yield what is wrong with parameters that are not free: their ties, and that all are."""
+    free = {parameter.name: parameter for parameter in parameters if parameter.free}
+    for each in parameters:
+        other = free.get(each.tie)
+        if each.tie and not other:
+            expected = "the name of a parameter that is neither fixed nor tied"
+            yield Fault("", f"{where} '{each.name}' tie", expected, f"'{each.tie}'")
+        elif other and other.nominal != each.nominal:
+            expected = f"{other.nominal:g} as of '{other.name}', to which it is tied"
+            yield Fault("", f"{where} '{each.name}' nominal", expected, f"{each.nominal:g}")
+    if parameters and not free:
+        yield Fault("", where, "one that is neither fixed nor tied", "none")
 
 
 BASE = "base"  # name of the term that does not depend on the parameters

@@ -255,8 +255,9 @@ class PeakResponse(modal.ModalPrediction):
         reached = problem.model, problem.start, top, count
         more = modal.modes_reaching(*reached) if last < top else count
         if more > count:
-            expected = f"modes that reach the end of the band, {top:g} Hz: {more}"
-            faults.append(Fault("", "modes", expected, f"{count}, up to {last:.4g} Hz"))
+            key = "modes" if self.modes is not None else "damping"
+            expected = f"{key} of all modes up to the end of the band, {top:g} Hz: {more}"
+            faults.append(Fault("", key, expected, f"{count}, up to {last:.4g} Hz"))
         if omega[0] == 0 and self.static:
             expected = "false, as a model with rigid-body modes has no static response"
             faults.append(Fault("", "static", expected, "true"))

@@ -223,7 +223,7 @@ def _summary(name: str, data: Dataset, first: float) -> Summary:
         tuple(np.ptp(models["error"].values, axis=0).tolist()),
         nearest,
         best,
-        preferred(data.attrs),
+        str(data.attrs["reference"]) or f"{preferred(data.attrs)}, not to be used",
         float(np.linalg.norm(chosen["error"].values)),
         tuple(_spreads("theta", "", models, chosen)),
         tuple(x for name in quantities for x in _spreads(name, f"{name} ", models, chosen)),

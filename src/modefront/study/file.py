@@ -22,7 +22,7 @@ from modefront.front.methods import METHODS
 from modefront.front.options import Weighted
 from modefront.models.base import Model, full_of
 from modefront.models.matrices import MatrixModel
-from modefront.models.parameters import Parameter
+from modefront.models.parameters import Parameter, wrong_ties
 from modefront.models.reduced.model import MEMORY
 from modefront.models.reduced.options import REDUCTION, Reduction
 from modefront.outputs import write_text
@@ -157,13 +157,7 @@ def read_parameters(root: opt.Table) -> tuple[list[str], tuple[Parameter, ...]]:
     for table in (table for table in tables if table.values.get("name") == "base"):
         table.fault("name", "another name: 'base' is the constant term", "'base'")
     root.note(opt.each_once("[[parameter]]", names))
-    free = {parameter.name for parameter in read if parameter.free}
-    for parameter in read:
-        if parameter.tie and parameter.tie not in free:
-            expected = "the name of a parameter that is neither fixed nor tied"
-            root.fault(f"[[parameter]] '{parameter.name}' tie", expected, f"'{parameter.tie}'")
-    if read and not free:
-        root.fault("[[parameter]]", "one that is neither fixed nor tied", "none")
+    root.note(wrong_ties("[[parameter]]", read))
     return names, read
 
 

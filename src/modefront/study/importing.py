@@ -24,7 +24,7 @@ from modefront._typing import Floats
 from modefront.errors import Fault, InputError, ModelError, refuse, refusing, suggestion, writing
 from modefront.fem.structure import DIRECTIONS
 from modefront.inputs import wrong
-from modefront.models.dofs import write_dofs
+from modefront.models.dofs import name_of, write_dofs
 from modefront.models.matrices import MatrixModel, matrices
 from modefront.models.parameters import BASE, exponents_of, form_of
 from modefront.outputs import output, write_text
@@ -301,7 +301,9 @@ def _frequencies(
 def _study(imported: Imported, folder: Path) -> str:
     """Return the study, of which the matrices are written into a folder."""
     dofs, quantities = imported.terms.dofs, []
-    nodes = dofs.node[dofs.node > 0]
+    moving = (dofs.node > 0) & (dofs.weight != 0) & np.isin(dofs.direction, (1, 2, 3))
+    last = np.flatnonzero(moving)[-1:]
+    node, k = next(zip(dofs.node[last], dofs.direction[last], strict=True), (12, 3))
     quoted = partial(json.dumps, ensure_ascii=False)  # TOML has texts as JSON has them
     for quantity in QUANTITIES:
         files: dict[str, str] = {}
@@ -318,7 +320,7 @@ def _study(imported: Imported, folder: Path) -> str:
         f"\n[study]\nname = {quoted(Path(imported.nominal.name).stem)}",
         "\n# What is left to you: measured modes, and where the sensors are.",
         '# [data]\n# file = "modes.csv"\n#\n# [model.sensors]',
-        f'# a = {{ node = {int(nodes[-1]) if nodes.size else 12}, direction = "z" }}',
+        f'# a = {{ node = {node}, direction = "{name_of(int(k))}" }}',
         '\n[model]\nkind = "matrices"\ndofs = "dofs.csv"',
         *(['mesh = "mesh.npz"'] if imported.nominal.mesh is not None else []),
         *(["floating = true"] if imported.floating else []),
