@@ -17,7 +17,7 @@ from modefront.findings.record import VERDICT, meaning_of
 from modefront.front.point import Kind
 from modefront.results.assemble import intervals, with_intervals
 from modefront.results.findings import _scatter
-from modefront.results.verdict import _front, closed
+from modefront.results.verdict import _closed, _front
 from modefront.uncertainty.inference import Inference
 from modefront.uncertainty.sampling import Draws
 from modefront.uncertainty.scatter import LinearisationWarning
@@ -93,12 +93,22 @@ def test_a_bound_holds_a_parameter_where_no_search_beyond_it_converges() -> None
 
 
 def test_what_to_fix_is_what_check_names_and_never_all() -> None:
-    names, draws = ["k1", "k2", "k3"], np.random.default_rng(0).normal(size=(200, 3))
-    nothing, fixed = ["not determined"] * 3, ": fixed = true"
-    assert closed(names, draws, nothing, ()) == [f"k1{fixed}", f"k2{fixed}"]
-    assert closed(names, draws, nothing, ["k3"]) == [f"k3{fixed}"]
+    draws, fixed = np.random.default_rng(0).normal(size=(200, 3)), ": fixed = true"
+    nominal = np.ones((1, 3))
+    values = {
+        "kind": (("point",), np.array(["nominal"])),
+        "parameter": (("parameter",), np.array(["k1", "k2", "k3"])),
+        "theta": (("point", "parameter"), nominal),
+        "sample_theta": (("draw", "parameter"), draws),
+        "trust": (("parameter",), np.array(["not determined"] * 3)),
+    }
+    data = ArrayDataset({name: Array(*x) for name, x in values.items()})
+    assert _closed(data, ()) == [f"k1{fixed}", f"k2{fixed}"]
+    assert _closed(data, ["k3"]) == [f"k3{fixed}"]
     draws[:, 0] = -draws[:, 2]
-    assert closed(names, draws, nothing, ["k3"]) == ['k3: tie = "k1"']
+    assert _closed(data, ["k3"]) == ['k3: tie = "k1"']
+    nominal[0, 2] = 2.0  # a tied parameter has the nominal value of the other one
+    assert _closed(data, ["k3"]) == [f"k3{fixed}"]
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 
-from modefront._typing import Floats
 from modefront.datasets import Dataset
 from modefront.findings.knowledge import SHOWN, bound, enumeration, held
 from modefront.findings.record import VERDICT
@@ -183,23 +182,22 @@ def _next(data: Dataset, spare: Sequence[str]) -> Iterator[str]:
         sensor, frequency = (data[f"candidate_{x}"].values[c] for x in ("sensor", "frequency"))
         what = f"at sensor {sensor}" if sensor else f"the mode near {frequency:.3g} Hz"
         yield _say("measure", what=what, name=name, gain=100 * gain[c])
-    names = data["parameter"].values.tolist()
-    lines = closed(names, data["sample_theta"].values, trust.tolist(), spare)
-    if lines:
+    if lines := _closed(data, spare):
         yield _say("leave-open-less", lines=enumeration(lines, SHOWN))
 
 
-def closed(
-    names: Sequence[str], samples: Floats, trust: Sequence[str], spare: Sequence[str]
-) -> list[str]:
+def _closed(data: Dataset, spare: Sequence[str]) -> list[str]:
     """Return the parameters that could be tied or fixed, with the line of a study that does it.
 
     These are the ``spare`` ones; without any, those that are not determined, of which one is left.
     Of those that are known together only, one is enough: draws of two whose sum is known are
     correlated negatively, and of those whose ratio is known positively.
     """
+    names, trust = data["parameter"].values.tolist(), data["trust"].values.tolist()
+    nominal = _row(data, Kind.NOMINAL)["theta"].values
     with np.errstate(invalid="ignore", divide="ignore"):
-        joint = np.nan_to_num(np.corrcoef(samples, rowvar=False)).reshape(len(names), -1)
+        joint = np.corrcoef(data["sample_theta"].values, rowvar=False)
+    joint = np.nan_to_num(joint).reshape(len(names), -1)
     lines, done = [], np.array([x == TRUST[0] for x in trust])
     for j in map(names.index, spare or names):
         if done[j]:
@@ -207,9 +205,9 @@ def closed(
         done[j] = True
         along = np.where(done, 0.0, joint[j])
         twin = int(np.argmax(np.abs(along)))
-        if along[twin] < -TWINS:
+        if along[twin] < -TWINS and nominal[j] == nominal[twin]:
             lines.append(f'{names[j]}: tie = "{names[twin]}"')
-        elif along[twin] > TWINS or trust[j] == TRUST[2] or spare:
+        elif abs(along[twin]) > TWINS or trust[j] == TRUST[2] or spare:
             lines.append(f"{names[j]}: fixed = true")
         if abs(along[twin]) > TWINS:
             done |= np.abs(along) > TWINS

@@ -426,10 +426,8 @@ def _combined(
     count: int | None,
 ) -> Identification:
     """Return the modes of the structure, and what is none."""
-    found, sensors = (
-        list[tuple[ModeEstimate, bool]](),
-        tuple(dict.fromkeys(x for each in setups for x in each.records.sensors)),
-    )
+    sensors = tuple(dict.fromkeys(x for each in setups for x in each.records.sensors))
+    found = list[tuple[ModeEstimate, bool]]()
     sines = np.sort([omega for x in setups for omega in x.lines.sines]) / (2 * np.pi)
     apart = np.diff(sines, prepend=-np.inf) > max(1 / x.records.duration for x in setups)
     text = "a harmonic: its lines are those of a sine"
