@@ -73,6 +73,7 @@ def problem_of(
     position = model.modes(true, int(count))
     f = position.frequency * (1 + noise * rng.normal(size=position.frequency.shape))
     phi = position.phi.T * (1 + noise * rng.normal(size=position.phi.T.shape))
+    f = np.where(f > 1e-6 * f.max(), f, np.nan)  # none of motions as a rigid body
     data = mf.modal_data(f, phi, model.sensors)
     ends = in_form(form, np.array([lower, upper]))
     bounds = dict.fromkeys(names, (float(ends[0]), float(ends[1])))

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from modefront._typing import Floats
 from modefront.errors import InputError
 from modefront.predictions import Passage
 from modefront.predictions.base import as_text
@@ -31,6 +32,12 @@ def results(
         all((e[j] >= e[i]).any() or (e[j] == e[i]).all() for j in range(count))
         for i in range(count)
     ]
+
+    def ends(values: Floats) -> Floats:
+        low, high = (end(values[[*pareto, True]], axis=0) for end in (np.min, np.max))
+        return np.stack([low, high, high / low])
+
+    failures = np.column_stack([t[:, 0], 2 * t[:, 0]])
     variables: dict[str, object] = {
         "label": (("point",), [*(f"nbi-{i + 1}" for i in range(count)), "optimal-weights"]),
         "kind": (("point",), [*["front"] * count, "optimal-weights"]),
@@ -52,8 +59,9 @@ def results(
         "minimum_of": (("minimum",), ["f"]),
         "minimum_theta": (("minimum", "parameter"), t[:1]),
         "minimum_objective": (("minimum", "group"), e[:1]),
-        "failure_probability": (("point", "failure"), np.column_stack([t[:, 0], 2 * t[:, 0]])),
-        "frequency_range": (("range", "mode"), np.zeros((3, 1))),
+        "failure_probability": (("point", "failure"), failures),
+        "failure_probability_range": (("range", "failure"), ends(failures)),
+        "frequency_range": (("range", "mode"), ends(10 * t[:, :1])),
         "finding": (("finding",), np.array([], dtype=str)),
     }
     if piece:
