@@ -99,6 +99,17 @@ class SetFiles:
     windows: Windows | None = None  # of records of blows; None where the test file has none
 
 
+def joined(sets: Sequence[Sequence[object]]) -> list[int]:
+    """Return an order of sets of sensors: each shares some with those before it where one does."""
+    left, out, known = [*range(len(sets))], list[int](), set[object]()
+    while left:
+        k = next((k for k in left if not known.isdisjoint(sets[k])), left[0])
+        left.remove(k)
+        out.append(k)
+        known |= {*sets[k]}
+    return out
+
+
 def channel_name(channel: str, names: Mapping[str, str]) -> tuple[str, int]:
     """Return the name of a channel, such as 1Z, and the sign of its direction, as 1-Z has it."""
     label = next((known for known in names if known.replace("-", "") == channel), "")
@@ -265,18 +276,14 @@ def _from_toml(path: Path) -> ModalTest:
     sets = _set_tables(root, ambient, common)
     root.close()
     refuse(root.faults)
-    left, setups = list(map(read_records, sets)) if ambient else [], list[Records]()
-    sensors = list[str]()
-    while left:  # each setup shares sensors with some before it
-        joined = (
-            k for k, x in enumerate(left) if not setups or not {*sensors}.isdisjoint(x.sensors)
-        )
-        if (k := next(joined, None)) is None:
+    records, sensors = tuple(map(read_records, sets)) if ambient else (), list[str]()
+    setups = [records[k] for k in joined([x.sensors for x in records])]
+    for setup in setups:
+        if sensors and {*sensors}.isdisjoint(setup.sensors):
             expected = f"a sensor that another set has: {', '.join(sorted({*sensors})[:8])}"
-            found = ", ".join(left[0].sensors[:8])
-            raise InputError(Fault(root.file, f"[[set]] {left[0].name!r}", expected, found))
-        setups.append(left.pop(k))
-        sensors += setups[-1].sensors
+            found = ", ".join(setup.sensors[:8])
+            raise InputError(Fault(root.file, f"[[set]] {setup.name!r}", expected, found))
+        sensors += setup.sensors
     data_sets = () if ambient else tuple(_data_set(root, each) for each in sets)
     sensors += [x for each in data_sets for x in each.data.responses]
     others = [x for each in data_sets for x in each.data.references]

@@ -16,6 +16,7 @@ from scipy.special import gammaincinv
 
 from modefront._typing import Floats, Ints
 from modefront.data.modal import ModalData
+from modefront.data.modal_test import joined
 from modefront.identification.record import MOST_COVARIED, Identification, ModeEstimate
 from modefront.identification.scan import alike
 
@@ -106,17 +107,6 @@ def between(x: Floats, std: Floats) -> float:
     if 2 * gammaincinv(freedom / 2, SIGNIFICANT) >= Q:
         return 0.0
     return float(np.sqrt((Q - freedom) / (weight.sum() - np.sum(weight**2) / weight.sum())))
-
-
-def joined(sets: Sequence[Sequence[object]]) -> list[int]:
-    """Return an order of sets of sensors: each shares some with those before it where one does."""
-    left, out, known = [*range(len(sets))], list[int](), set[object]()
-    while left:
-        k = next((k for k in left if not known.isdisjoint(sets[k])), left[0])
-        left.remove(k)
-        out.append(k)
-        known |= {*sets[k]}
-    return out
 
 
 ModesOfSet = tuple[Sequence[str], Sequence[ModeEstimate]]  # sensors and modes of one set
