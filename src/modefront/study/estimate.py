@@ -165,8 +165,10 @@ def _search(study: Study) -> tuple[float, float] | None:
             known = min(ends, key=lambda x: float(x.J[k % n]), default=None)
             ends.append(edge.solve(problem, start, known))
             found.append((time.process_time() - began, 1 + ends[-1].evaluations))
-    if found:
-        seconds, average = (float(np.mean(x)) for x in zip(*found, strict=True))
+    if found:  # by the median of an evaluation: modules are imported in some of the first ones
+        spent, counts = np.array(found).T
+        average = float(counts.mean())
+        seconds = average * float(np.median(spent / counts))
     model = problem.model
     if is_reduced(study.problem.model) and isinstance(model, MatrixModel):
         count = modes_needed(problem.pairing, problem.data, model.size)
