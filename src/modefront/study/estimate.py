@@ -167,7 +167,9 @@ def _search(study: Study) -> tuple[float, float] | None:
             found.append((time.process_time() - began, 1 + ends[-1].evaluations))
     if found:  # by the median of an evaluation: modules are imported in some of the first ones
         spent, counts = np.array(found).T
-        average = float(counts.mean())
+        # One of the starts of an edge knows no model that is better, and takes longest.
+        later = counts[1:].mean() if len(counts) > 1 else counts[0]
+        average = float(later + study.search.doubt * (counts[0] - later))
         seconds = average * float(np.median(spent / counts))
     model = problem.model
     if is_reduced(study.problem.model) and isinstance(model, MatrixModel):
