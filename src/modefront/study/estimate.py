@@ -36,7 +36,7 @@ from modefront.work.task import seed_sequence, uncounted
 
 NEAR = 0.4, 2.0  # time of a search from a known model over that of one from anywhere, from and to
 SHORT = 30.0  # seconds up to which no advice on a shorter run is given
-STEP = 3.0, 5.0  # evaluations of a step from one draw of the posterior to the next, from and to
+STEP = 3.0, 7.0  # evaluations of a step from one draw of the posterior to the next, from and to
 
 ENDS = 20
 """Steps to the end of a range at a model, with a slack: each takes derivatives by differences."""
