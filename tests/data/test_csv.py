@@ -152,8 +152,8 @@ def test_arrays_make_the_same_data_as_a_file(tmp_path: Path) -> None:
     ("frequency", "shape", "message"),
     [
         ([1.0, 2.0], [[1.0, 1j], [0.0, 1.0]], "shape: expected real numbers.* found complex ones"),
-        ([1.0, 2.0], [[1.0, 1.0], [0.0, nan]], "shape: expected mode shapes that are not zero"),
-        ([1.0, 0.0], [[1.0, 1.0], [1.0, nan]], "frequency: expected frequencies above 0 Hz"),
+        ([1.0, 2.0], [[1.0, 1.0], [0.0, nan]], "shape of mode 2 in set 1: expected a mode"),
+        ([1.0, 0.0], [[1.0, 1.0], [1.0, nan]], "frequency of mode 2 in set 1: expected a"),
         ([[1.0], [2.0]], [[[1.0, 1.0]]] * 2, "sets: expected 2 names, found 1"),
     ],
 )

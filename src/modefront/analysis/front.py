@@ -229,8 +229,8 @@ def _solved_points(
     """Return the points with what each of them solves, as far as that is a programme.
 
     Points of weights follow from their weights, points of normal-boundary intersection from their
-    edges; those of the identifiable part solve bounds. The most probable model is none of
-    them: its residuals have other units, and priors hold it, too. It has its posterior.
+    edges; those of the identifiable part solve bounds. The most probable model is none of them:
+    its residuals have other units, and priors hold it, too. It has its posterior.
     """
     edges, out = of_kind(front.points, Kind.EDGE), list[SolvedPoint]()
     for i, (point, edge) in enumerate(zip(edges, front.edges, strict=True)):

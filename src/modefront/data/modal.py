@@ -222,11 +222,16 @@ def modal_data(
     names = sets if sets is not None else tuple(str(k + 1) for k in range(len(f)))
     silent = np.isfinite(phi).any(axis=2) & ~np.nan_to_num(phi).any(axis=2)
     checks = (
-        (len(names) != len(f), "sets", f"{len(f)} names", str(len(names))),
-        ((f <= 0).any(), "frequency", "frequencies above 0 Hz", "others"),
-        (silent.any(), "shape", "mode shapes that are not zero at all sensors", "only zeros"),
+        ("frequency", f <= 0, "a frequency above 0 Hz", "0 or less"),
+        ("shape", silent, "a mode shape that is not zero at all sensors", "only zeros"),
     )
-    refuse(Fault("", *said) for is_wrong, *said in checks if is_wrong)
+    count = [Fault("", "sets", f"{len(f)} names", str(len(names)))] * (len(names) != len(f))
+    of_modes = (
+        Fault("", f"{key} of mode {r + 1} in set {k + 1}", *said)
+        for key, mask, *said in checks
+        for k, r in np.argwhere(mask).tolist()
+    )
+    refuse([*count, *of_modes])
     modes = tuple(range(1, f.shape[1] + 1))
     data = ModalData(names, modes, tuple(sensors), f, zeta, phi, f_std, phi_std)
     return data if shape_covariance is None else data.with_covariance(shape_covariance)

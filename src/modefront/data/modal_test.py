@@ -132,8 +132,9 @@ def read_records(setup: SetFiles) -> Records:
                 raise wrong(path, EXPECTED, "others", f"sensor {name!r}")
             names.append(name)
             rows.append(row)
-    for own in (x for x, name in setup.columns.items() if name not in (*names, SECONDS)):
-        raise wrong(setup.files[0], "a column of the CSV files of the set", repr(own), "columns")
+    if others := [x for x, name in setup.columns.items() if name not in (*names, SECONDS)]:
+        found = ", ".join(map(repr, others))
+        raise wrong(setup.files[0], "a column of the CSV files of the set", found, "columns")
     moving = {name: row for name, row in zip(names, rows, strict=True) if np.ptp(row) > 0}
     if not moving:
         raise wrong(setup.files[0], "a sensor that moves", "none", "records")
