@@ -286,6 +286,15 @@ def test_a_matrix_that_does_not_fit_into_the_memory(
         read_matrix(path)
 
 
+def test_what_readers_take_before_a_file_is_not_of_its_memory(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    head = "%%MatrixMarket matrix array real symmetric\n%\n2 2\n5E3\n-2E3\n"
+    (tmp_path / "A.mtx").write_text(head + "2E3\n")
+    monkeypatch.setattr("modefront.work.isolated.available_memory", lambda: 2 * 10**8)
+    assert read_matrix(tmp_path / "A.mtx").shape == (2, 2)
+
+
 def test_a_reader_that_crashes_takes_no_process_with_it(tmp_path: Path) -> None:
     head = "%%MatrixMarket matrix array real symmetric\n%\n2 2\n5E3\n-2E3\n"
     (tmp_path / "A.mtx").write_text(head + "2E31e999")  # SciPy's reader reads beyond the end

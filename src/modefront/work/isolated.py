@@ -198,7 +198,7 @@ def serve() -> None:
 
 
 def limit(memory: int) -> None:
-    """Limit the memory of this process, where the system can, and write no core file."""
+    """Limit what this process takes besides, where the system can, and write no core file."""
     try:
         import resource
     except ImportError:  # Windows
@@ -206,5 +206,7 @@ def limit(memory: int) -> None:
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     if sys.platform == "linux":  # others count memory that is not taken
         hard = resource.getrlimit(resource.RLIMIT_AS)[1]
-        most = memory if hard == resource.RLIM_INFINITY else min(memory, hard)
+        pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[0])
+        most = memory + pages * resource.getpagesize()  # readers that are imported take much
+        most = most if hard == resource.RLIM_INFINITY else min(most, hard)
         resource.setrlimit(resource.RLIMIT_AS, (most, hard))
