@@ -1,7 +1,7 @@
 """The parts of sequential quadratic programming, and programmes with a maximum."""
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -13,10 +13,11 @@ from problems import Derivatives, Known, bowls, box, circles, curved, sphere
 from modefront._typing import Floats
 from modefront.optim.linearised import augmented, projected, surplus
 from modefront.optim.problem import Evaluation, Residual
-from modefront.optim.scalarisation import Scalarisation, achievement, below, weighted
+from modefront.optim.scalarisation import Scalarisation, achievement, below, total, weighted
 from modefront.optim.sqp import Options, Solution, Status, begin, learned_from, solve
 
 SEEDS = st.integers(0, 2**31)
+LEVELS = 1e-4 * np.ones(2), np.eye(2), np.zeros(2)
 
 
 # ---- one programme ---------------------------------------------------------------------------
@@ -124,6 +125,41 @@ def test_a_jump_is_told_from_a_minimum_and_its_other_side_is_tried(
     assert result.status is status
     assert result.J[0] == pytest.approx(step if result.converged else 0.49, abs=1e-2)
     assert result.evaluations < 50
+
+
+@pytest.mark.parametrize("programme", [weighted(np.ones(2)), achievement(*LEVELS)])
+@given(seed=SEEDS)
+def test_a_jump_is_followed_where_a_problem_knows_it(programme: Scalarisation, seed: int) -> None:
+    """Two bowls around (1, 0) and (1, 1), which end at the curve x + y**2 = 0.2."""
+
+    def smooth(theta: Floats) -> Derivatives:
+        r = theta - np.array([[1.0, 0.0], [1.0, 1.0]])
+        wall = theta[0] + theta[1] ** 2 - 0.2
+        J = np.append((r**2).sum(axis=1), wall)
+        dJ = np.vstack([2 * r, [1.0, 2 * theta[1]]])
+        return J, dJ, np.array([2 * np.eye(2)] * 2 + [np.zeros((2, 2))])
+
+    @dataclass(frozen=True)
+    class Jumping(Known):
+        def continued(self, inside: Evaluation, beyond: Evaluation) -> Known:
+            assert smooth(inside.theta)[0][2] <= 0 < smooth(beyond.theta)[0][2]
+            return box(smooth, [-2, -2], [2, 2], 3)
+
+    def jumping(theta: Floats) -> Derivatives:
+        J, dJ, H = smooth(theta)
+        return J[:2] + 9.0 * (J[2] > 0), dJ[:2], H[:2]
+
+    x = box(jumping, [-2, -2], [2, 2])
+    problem = Jumping(x.function, x.lower, x.upper, x.start, x.objectives)
+    theta = np.random.default_rng(seed).uniform(-2, [-1.0, 1.5])
+    assume(smooth(theta)[0][2] < -0.1)
+    result = solve(problem, programme, begin(problem.evaluate(theta)))
+    ends = np.linspace(-2, 2, 4001)
+    along = [smooth(np.array([0.2 - y**2, y]))[0][:2] for y in ends]
+    assert total(programme, result.J) == pytest.approx(
+        min(total(programme, J) for J in along), abs=1e-4
+    )
+    assert result.status is Status.JUMP
 
 
 def test_an_exhausted_search_says_so() -> None:

@@ -331,6 +331,34 @@ def test_likely_pairs_are_those_of_all_permutations(seed: int) -> None:
     )
 
 
+def test_pairs_go_on_beyond_where_mac_values_change_them() -> None:
+    problem = problem_of(modal_data(FREQUENCY[None], SHAPE[None, :, 1:], sensors=FLOORS[1:]))
+    rng = np.random.default_rng(1)
+    thetas = rng.uniform(0.3, 4.0, size=(200, 4))
+    seen = [problem.evaluate(theta) for theta in thetas]
+    inside = seen[0]
+    here = inside.quantities["paired_mode"]
+    beyond = next(x for x in seen if (x.quantities["paired_mode"] != here).any())
+    there = beyond.quantities["paired_mode"]
+    smooth = problem.continued(inside, beyond)
+    assert smooth is not None
+    assert problem.continued(inside, inside) is None
+    assert replace(problem, likelihood=LogSum(np.ones(2))).continued(inside, beyond) is None
+    for x in seen:
+        found, pairs = smooth.evaluate(x.theta), x.quantities["paired_mode"]
+        if (pairs == there).all():
+            assert found.J[-1] > 0
+            assert (found.quantities["paired_mode"] == here).all()
+        else:
+            np.testing.assert_array_equal(found.J[:-1], x.J)
+            assert found.J[-1] < 0 or (pairs != here).any()
+        np.testing.assert_array_equal(found.J, smooth.evaluate(x.theta, derivatives=False).J)
+    middle, h = smooth.evaluate(beyond.theta), 1e-6
+    for j, step in enumerate(h * np.eye(4)):
+        ahead, behind = (smooth.evaluate(beyond.theta + x).J for x in (step, -step))
+        np.testing.assert_allclose((ahead - behind) / (2 * h), middle.dJ[:, j], atol=1e-6)
+
+
 @pytest.mark.parametrize(
     ("N", "reduction"), [(12, "off"), (12, "auto"), (240, "off"), (240, "auto")]
 )

@@ -83,7 +83,8 @@ def recorded(
 
     def evaluation(of: Problem, theta: Floats, derivatives: bool, second: bool) -> Evaluation:
         found = of.evaluate(theta, derivatives=derivatives, second=second)
-        archive.add(found.J, found.theta)
+        if of is problem:
+            archive.add(found.J, found.theta)
         return found
 
     metered = Wrapped(problem, evaluation, most=most)

@@ -151,10 +151,30 @@ class Wrapped:
         self, theta: Floats, *, derivatives: bool = True, second: bool = False
     ) -> Evaluation:
         """Return the objectives at ``theta``."""
+        return self._counted(self.problem, theta, derivatives, second)
+
+    def continued(self, inside: Evaluation, beyond: Evaluation) -> Problem | None:
+        """Return the problem without a jump, see `without_jump`; None with other objectives."""
+        smooth = None if self.names else without_jump(self.problem, inside, beyond)
+        return smooth and Wrapped(smooth, self._counted)
+
+    def _counted(
+        self, problem: Problem, theta: Floats, derivatives: bool, second: bool
+    ) -> Evaluation:
         if self.count == self.most:
             raise SpentError
         self.count += 1
-        return self.evaluation(self.problem, theta, derivatives, second)
+        return self.evaluation(problem, theta, derivatives, second)
+
+
+def without_jump(problem: Problem, inside: Evaluation, beyond: Evaluation) -> Problem | None:
+    """Return a problem whose objectives go on smoothly where they jump between two models.
+
+    One objective more is negative where the others are those of the ``inside`` model's side, and
+    positive beyond. None where the problem does not know why they jump: it has no ``continued``.
+    """
+    continued = getattr(problem, "continued", None)
+    return continued and continued(inside, beyond)
 
 
 def with_second_order(problem: Problem, evaluation: Evaluation) -> Evaluation | None:

@@ -19,6 +19,8 @@ STEEP = 1e3
 """Slope of a penalty over that of what is minimised: a constraint is met where its multiplier is
 less."""
 
+MARGIN = 1e-6  # by which a penalty keeps below zero, in the unit of parameters over their ranges
+
 
 @dataclass(frozen=True)
 class Rows:
@@ -89,7 +91,47 @@ class LogSum:
         return np.diag(-self.a / np.maximum(J + self.floor, LEAST) ** 2)
 
 
-Scalarisation = Linear | LogSum
+@dataclass(frozen=True)
+class Within:
+    """A programme of all objectives but the last, g, which a penalty keeps below zero.
+
+    What is minimised and g are taken over a unit each: their typical slopes.
+    """
+
+    programme: "Scalarisation"
+    unit: float
+    last: float
+
+    @property
+    def maximised(self) -> Rows:
+        """The rows of the programme, and once more with the penalty."""
+        rows = self.programme.maximised
+        C = rows.matrix / self.unit if len(rows.matrix) else np.zeros((1, rows.matrix.shape[1]))
+        d = rows.offset / self.unit if len(rows.matrix) else np.zeros(1)
+        penalty = np.repeat([0.0, STEEP], len(C))
+        C = np.column_stack([np.tile(C, (2, 1)), penalty / self.last])
+        return Rows(C, np.tile(d, 2) - penalty * MARGIN, STEEP)
+
+    def value(self, J: Floats) -> float:
+        """Return f over its unit."""
+        return self.programme.value(J[:-1]) / self.unit
+
+    def gradient(self, J: Floats) -> Floats:
+        """Return its slope, 0 for g."""
+        return np.append(self.programme.gradient(J[:-1]) / self.unit, 0.0)
+
+    def hessian(self, J: Floats) -> Floats:
+        """Return its second derivatives, 0 for g."""
+        return np.pad(self.programme.hessian(J[:-1]) / self.unit, (0, 1))
+
+
+def total(programme: "Scalarisation", J: Floats) -> float:
+    """Return what a programme minimises."""
+    y = programme.maximised.at(J)
+    return programme.value(J) + float(y.max() if y.size else 0.0)
+
+
+Scalarisation = Linear | LogSum | Within
 """A smooth function f of the objectives and a maximum of linear ones, minimised together: ``value``
 returns f, ``gradient`` df/dJ (n,), ``hessian`` d2f/dJ2 (n, n), and ``maximised`` is C J - d."""
 

@@ -33,9 +33,9 @@ import scipy.linalg
 
 from modefront._typing import Floats
 from modefront.optim.linearised import PENALTY, Linearised, UnitBox, augmented
-from modefront.optim.problem import DISTINCT, Evaluation, Problem, room
+from modefront.optim.problem import DISTINCT, Evaluation, Problem, room, without_jump
 from modefront.optim.qp import QuadraticProgramme
-from modefront.optim.scalarisation import Scalarisation
+from modefront.optim.scalarisation import Scalarisation, Within, total
 from modefront.work.codec import record
 from modefront.work.progress import ITERATION, note
 
@@ -131,7 +131,6 @@ def begin(evaluation: Evaluation) -> Solution:
     return Solution(evaluation, np.zeros(evaluation.J.size), status, 0)
 
 
-# More than 60 lines: one step, with all that it changes.
 def solve(
     problem: Problem,
     programme: Scalarisation,
@@ -143,12 +142,58 @@ def solve(
 
     The start itself is not evaluated again where its second derivatives are known. Steps to points
     at which the objectives are not defined are shortened. A step to a ``known`` solution is not
-    made: that is what the start leads to.
+    made: that is what the start leads to. Where objectives jump, the programme is solved along the
+    jump, and then from there, as long as it gains.
     """
     options = options or Options()
     known = known if known and known.converged else None
     if not start.feasible:
         return replace(start, status=Status.INFEASIBLE, evaluations=0)
+    best, beyond = _descend(problem, programme, start, options, known)
+    while best.status is Status.JUMP and beyond is not None and beyond.feasible:
+        here, moved = best, False
+        if end := _along(problem, programme, best, beyond):
+            spent = best.evaluations + end.evaluations
+            if total(programme, end.J) < total(programme, best.J):
+                best, beyond = _descend(problem, programme, end, options, known)
+                spent += best.evaluations
+                apart = (best.theta - here.theta) / (problem.upper - problem.lower)
+                moved = float(np.abs(apart).max()) > DISTINCT
+            best = replace(best, evaluations=spent)
+        if not moved:
+            break
+    return best
+
+
+def _along(
+    problem: Problem, programme: Scalarisation, here: Solution, beyond: Evaluation
+) -> Solution | None:
+    """Return the best model along a jump, next to it; None where that is not known or not defined.
+
+    ``beyond`` is a model on the other side.
+    """
+    smooth = without_jump(problem, here.evaluation, beyond)
+    if smooth is None:
+        return None
+    start = smooth.evaluate(here.theta, second=True)
+    slopes = start.dJ * (problem.upper - problem.lower)
+    units = np.linalg.norm([here.weights @ slopes[:-1], slopes[-1]], axis=1).tolist()
+    if not all(units):
+        return None
+    found, _ = _descend(smooth, Within(programme, *units), begin(start), Options())
+    end = begin(problem.evaluate(found.theta, second=True))
+    return replace(end, evaluations=found.evaluations + 2) if end.feasible else None
+
+
+# More than 60 lines: one step, with all that it changes.
+def _descend(
+    problem: Problem,
+    programme: Scalarisation,
+    start: Solution,
+    options: Options,
+    known: Solution | None = None,
+) -> tuple[Solution, Evaluation | None]:
+    """Return a solution by steps that fall, and where those fail, the end of the last one."""
     evaluation, count = start.evaluation, -1
     if not evaluation.derivatives:
         evaluation, count = problem.evaluate(evaluation.theta, second=True), 0
@@ -159,6 +204,7 @@ def solve(
     radius, penalty = options.radius, PENALTY / programme.maximised.slope**2
     kappa: Floats | None = None
     rejected = False  # whether the last step was
+    beyond: Evaluation | None = None  # the end of the last step that was
     proposal = np.inf  # length of the last step that the trust region did not hold back
     calm: tuple[float, Solution] | None = None  # where, and how long, steps promised only rounding
     while True:
@@ -166,7 +212,7 @@ def solve(
         note(f"{ITERATION}{count + 1}")
         if not local.y.size and local.f <= options.negligible:
             ended = Status.UNBOUNDED if local.f == -np.inf else Status.CONVERGED
-            return Solution(evaluation, local.df, ended, count)
+            return Solution(evaluation, local.df, ended, count), None
         H = local.G + S if trusted else local.G
         qp, s, active, kappa = local.step(H, radius, kappa)
         w = local.weights(kappa)
@@ -176,7 +222,7 @@ def solve(
         if known and not held:
             end = unit.after(evaluation.theta, s)
             if np.abs((end - known.theta) / unit.span).max() <= DISTINCT:
-                return replace(known, evaluations=count)
+                return replace(known, evaluations=count), None
         still = far <= options.step or local.unchanging(s, options.reduction)
         still = still and not (held and rejected)  # a radius that has fallen shortens any step
         if still and not escaped:
@@ -190,13 +236,13 @@ def solve(
             status = Status.CONVERGED if proposal <= options.step else Status.JUMP
         here = Solution(evaluation, w, status or Status.EXHAUSTED, count)
         if status or count >= options.iterations:
-            return here
+            return here, beyond
 
         predicted, penalty = local.predicted(qp.B, s, kappa, penalty)
         noise = local.noise(kappa)
         rests = predicted <= noise
         if calm and rests and far >= calm[0]:  # the objectives tell no more
-            return replace(calm[1], status=Status.CONVERGED, evaluations=count)
+            return replace(calm[1], status=Status.CONVERGED, evaluations=count), None
         calm = (far, here) if rests else None
         new = local.after(s)
         if not new.feasible:
@@ -227,7 +273,7 @@ def solve(
             elif ratio > GOOD and far >= radius:
                 radius = min(2 * radius, 1.0)
         else:
-            radius, rejected = far / 4, True
+            radius, rejected, beyond = far / 4, True, new
 
 
 def learned_from(S: Floats, before: Evaluation, after: Evaluation) -> Floats:

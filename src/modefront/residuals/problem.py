@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from modefront._typing import Floats
+from modefront._typing import Floats, Ints
 from modefront.data.modal import ModalData
 from modefront.errors import ModelError
 from modefront.models.base import Model, passed_on
@@ -29,6 +29,7 @@ from modefront.pairing.match import (
     Pairs,
     mac_slopes,
     match,
+    mean_mac,
     modes_needed,
 )
 from modefront.residuals.base import Member, ModeErrors, Stack
@@ -136,6 +137,12 @@ class UpdatingProblem(Shown):
             modes, pairs = self.modes(theta, derivatives=derivatives)
         except ModelError:
             return infeasible(theta, len(self.groups))
+        return self.evaluated(theta, modes, pairs, derivatives=derivatives, second=second)
+
+    def evaluated(
+        self, theta: Floats, modes: Modes, pairs: Pairs, *, derivatives: bool, second: bool
+    ) -> Evaluation:
+        """Return the objectives at ``theta`` of its modes, which are paired as given."""
         quantities = {
             "frequency": modes.frequency[pairs.index],
             "mac": pairs.mac,
@@ -155,6 +162,17 @@ class UpdatingProblem(Shown):
         if rest is not None:
             H += rest
         return Evaluation(theta, J, dJ, H, rest is not None, quantities, residuals)
+
+    def continued(self, inside: Evaluation, beyond: Evaluation) -> "Continued | None":
+        """Return the problem with the pairs of one model beyond where MAC values change them.
+
+        None where the pairs of both models are the same, or those that are least in something: no
+        objectives jump then because of them.
+        """
+        q, other = (x.quantities["paired_mode"].astype(np.intp) - 1 for x in (inside, beyond))
+        if self.likelihood is not None or np.array_equal(q, other):
+            return None
+        return Continued(self, q, other)
 
     def modes(self, theta: Floats, *, derivatives: bool = True) -> tuple[Modes, Pairs]:
         """Return the model's modes at ``theta`` and which of them belong to the measured ones."""
@@ -213,6 +231,47 @@ class UpdatingProblem(Shown):
         errors = ModeErrors(eigenvalue, shape)
         squares = [sum(member.margin(errors) for member in row) for row in self.members]
         return np.sqrt(np.array(squares))
+
+
+@dataclass(eq=False)
+class Continued:
+    r"""A problem in which the pairs on one side of a jump hold on its other side too.
+
+    Its last objective is the sum of the MAC values of the pairs beyond, less that of those inside:
+    the jump is where it is 0.
+    """
+
+    problem: UpdatingProblem
+    inside: Ints  # inside, beyond: (measured modes,) paired model modes, counted from 0
+    beyond: Ints
+
+    def __post_init__(self) -> None:
+        self.objectives = (*self.problem.objectives, "beyond")
+        self.lower, self.upper = self.problem.lower, self.problem.upper
+        self.start = self.problem.start
+
+    def evaluate(
+        self, theta: Floats, *, derivatives: bool = True, second: bool = False
+    ) -> Evaluation:
+        """Return the objectives at ``theta``; second derivatives of the last one are not known."""
+        problem = self.problem
+        try:
+            modes, pairs = problem.modes(theta, derivatives=derivatives)
+        except ModelError:
+            return infeasible(theta, len(self.objectives))
+        values, rows = mean_mac(problem.data, modes.phi), np.arange(self.inside.size)
+        inside, beyond = (Pairs(q, values[rows, q]) for q in (self.inside, self.beyond))
+        if np.array_equal(pairs.index, self.beyond):
+            pairs = inside
+        known = problem.evaluated(theta, modes, pairs, derivatives=derivatives, second=second)
+        J = np.append(known.J, np.nansum(beyond.mac - inside.mac))
+        if not derivatives:
+            return replace(known, J=J)
+        seen = problem.data, modes.phi, modes.dphi
+        slopes = [mac_slopes(seen[0], x, *seen[1:]) for x in (beyond, inside)]
+        dJ = np.vstack([known.dJ, np.nansum(slopes[0] - slopes[1], axis=0)])
+        H = np.concatenate([known.H, np.zeros((1, theta.size, theta.size))])
+        return replace(known, J=J, dJ=dJ, H=H, residuals=())
 
 
 # 8 arguments: the parts of a problem, the optional ones by keyword.
