@@ -31,7 +31,7 @@ from modefront.work.task import IMMEDIATE, Executor, Key, Task, Within, seed_seq
 ANCHORS = ("edge", "weights", "others")  # kinds of subproblems that are no points between edges
 
 
-# 8 arguments: the problem, and each group of options of a search.
+# 9 arguments: the problem and what is known of it, and each group of options of a search.
 def pareto_front(
     problem: Problem,
     a: Floats,
@@ -42,15 +42,17 @@ def pareto_front(
     given: Sequence[tuple[str, Floats]] = (),
     work: Executor = IMMEDIATE,
     known: Front | None = None,
+    least: Floats | None = None,
 ) -> Front:
     """Return the edges, the weighted models, the front by a method, and its gaps.
 
     ``a`` (n,) counts the measured properties of each objective; ``given`` are named weights (n,).
     With a ``known`` front of nearly the same problem, its models and the minima of its edges are
-    solved for again, and nothing else is sought. Raises UnfinishedError where no edge can be found.
+    solved for again, and nothing else is sought. Where no objectives fall below ``least`` (n,), a
+    minimum that is as low is not sought again. Raises UnfinishedError where no edge can be found.
     """
-    run = _Run(problem, a, options or Pareto(), seed, search or Search(), given, work, known)
-    return run.front()
+    state = State(problem, search or Search(), work, least)
+    return _Run(problem, a, options or Pareto(), seed, given, known, state).front()
 
 
 @dataclass
@@ -61,16 +63,15 @@ class _Run:
     a: Floats
     options: Pareto
     seed: int
-    search: Search
     given: Sequence[tuple[str, Floats]]
-    work: Executor
     known: Front | None
+    state: State
+    cut: bool = False
 
     def __post_init__(self) -> None:
         self.n, self.sizes = len(self.problem.objectives), np.zeros(0)
         named = [(Kind.GIVEN, name, w) for name, w in self.given]
         self.weighted = [*named, (Kind.EQUAL, "", np.ones(self.n))]
-        self.state, self.cut = State(self.problem, self.search, self.work), False
         rng = np.random.default_rng(seed_sequence(self.seed, "search"))
         self.children = np.random.default_rng(seed_sequence(self.seed, "evolution"))
         names, edges = self.problem.objectives, self.known.edges if self.known else ()
@@ -158,7 +159,7 @@ class _Run:
 
     def _run(self, tasks: Sequence[Task[Any]]) -> list[Any]:
         """Return the results of tasks, None where the evaluations of one were spent."""
-        return self._needed(tasks, self.search.evaluations - self.state.evaluations)
+        return self._needed(tasks, self.state.limits.evaluations - self.state.evaluations)
 
     def _needed(self, tasks: Sequence[Task[Any]], most: int | None = None) -> list[Any]:
         """Return the results of tasks, whatever they cost unless there are ``most`` evaluations.
@@ -263,7 +264,7 @@ class _Run:
 
     def _halfway(self, target: Payoff) -> Iterator[list[tuple[int, ...]]]:
         """Yield points half-way between neighbours of two objectives that are too far apart."""
-        size = self.options.refined
+        size, work = self.options.refined, self.state.work
         for _ in range(int(np.ceil(-np.log2(size))) if size else 0):
             pairs = [(x.incumbent, x.subproblem) for x in self.state.places]
             here = [(x, point) for x, point in pairs if isinstance(point, LatticePoint)]
@@ -277,7 +278,7 @@ class _Run:
             if not new:
                 break
             # What follows is another repetition of what an earlier run may have kept without it.
-            self.state.work = Within(self.work, ("refined", repr(size)))
+            self.state.work = Within(work, ("refined", repr(size)))
             yield new
 
     def _weighted(self) -> list[Point]:
@@ -300,8 +301,9 @@ class _Run:
             if self.known:
                 out.append(replace(self.known.edges[k], best=place.incumbent, minima=minima))
                 continue
-            rare = known.hits(place, self.search.tolerance) < SURE
-            doubtful = rare and known.unseen() >= self.search.doubt
+            rare = known.hits(place, self.state.limits.tolerance) < SURE
+            rare = rare and not self.state.is_settled(place)
+            doubtful = rare and known.unseen() >= self.state.limits.doubt
             out.append(Edge(place.incumbent, minima, known.tries, len(known.ends), doubtful))
         return out
 

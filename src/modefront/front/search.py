@@ -173,6 +173,7 @@ class State:
     problem: Problem  # that is searched
     limits: Search = field(default_factory=Search)  # when it ends
     work: Executor = IMMEDIATE  # carries out tasks
+    least: Floats | None = None  # (n,) values that no objectives fall below; None of unknown ones
     # subproblems with their incumbents
     places: list[Place] = field(default_factory=list)
     evaluations: int = 0  # so far
@@ -200,6 +201,12 @@ class State:
         orders = [x.subproblem.order for x in self.places]
         parts = zip(*((x.unit, x.offset, x.greatest, x.share) for x in orders), strict=True)
         return Order(*map(np.array, parts))
+
+    def is_settled(self, place: Place) -> bool:
+        """Return whether no model can be better than the best one of a place, by what counts."""
+        if self.least is None:
+            return False
+        return place.subproblem.gain(self.least, place.incumbent) <= self.limits.tolerance
 
     def run(self, tasks: Sequence[Task[Any]], most: int | None = None) -> list[Outcome]:
         """Return what tasks on the problem find, each in its share of ``most`` evaluations."""

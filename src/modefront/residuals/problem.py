@@ -126,6 +126,12 @@ class UpdatingProblem(Shown):
         """Counts a_i of the measured properties of each group, shape (groups,)."""
         return np.array([sum(member.count for member in row) for row in self.members])
 
+    @cached_property
+    def least(self) -> Floats:
+        """Values of the objectives that no model falls below, as data sets differ, (groups,)."""
+        parts = [[member.independent() for member in row] for row in self.members]
+        return np.array([sum(scatter for _, scatter, _ in row) for row in parts])
+
     def evaluate(
         self, theta: Floats, *, derivatives: bool = True, second: bool = False
     ) -> Evaluation:

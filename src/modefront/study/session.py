@@ -188,6 +188,7 @@ def worked(study: Study, work: Run) -> Dataset:
     refuse_unchanged_groups(problem, file, unchanged)
     weighted = [(each.name, each.of(problem.objectives)) for each in study.weighted]
     of_search: dict[str, Any] = {"seed": seed, "search": study.search, "given": weighted}
+    of_search["least"] = problem.least
     search = partial(pareto_front, problem, problem.properties, study.pareto, **of_search)
     # What follows from the points of a refined front, snapshots included, is another repetition.
     refined = study.pareto.refined

@@ -93,6 +93,8 @@ class Starts:
                 left = self.again.get(place.subproblem.key, ())[known.tries :]
                 yield from (solve_from(place, at(x.theta), 1.0) for x in left[:most])
                 continue
+            if state.is_settled(place) and known.tries >= USUAL:
+                continue
             known.thetas = known.thetas or [state.problem.start]
             while len(known.thetas) < known.tries + most:
                 # spread evenly over each range
@@ -118,7 +120,10 @@ class Starts:
     def unseen(self, state: State) -> float:
         """Return the chance that a start gains at most, of the places that have had some."""
         tried = [x for x in state.places if x.subproblem.key in self.minima]
-        return max(self.of(x).chance(x, state.limits.tolerance) for x in tried) if tried else 0.0
+        left = [
+            self.of(x).chance(x, state.limits.tolerance) for x in tried if not state.is_settled(x)
+        ]
+        return max(left, default=0.0)
 
     def of(self, place: Place) -> Minima:
         """Return the minima of a subproblem."""
