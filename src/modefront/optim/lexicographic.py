@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.optim.problem import Evaluation, Problem
+from modefront.optim.problem import DISTINCT, Evaluation, Problem
 from modefront.optim.scalarisation import Linear, weighted
 from modefront.optim.sqp import Options, Solution, Status, solve
 
@@ -73,8 +73,8 @@ class Lexicographic:
         """Return the lexicographic minimum below a start.
 
         A minimum of the first objective that exceeds that of a ``known`` model is left where it is,
-        and so is a model on the way to one, at the limit of iterations. Where a path begins as the
-        one that led to the known model, it is not followed again.
+        and so is a model on the way to one, at the limit of iterations. Where a path meets the one
+        that led to the known model, it is not followed further.
         """
         i = self.objective
         best = solve(problem, self.programme(0.0), start, TIGHTEST, known)
@@ -102,26 +102,30 @@ class Lexicographic:
         Each but the first ones is solved for from the limit that those before it tell, as exactly
         as the share of the others asks for.
         """
-
-        def minimiser(start: Solution) -> Solution:
-            enough = replace(TIGHTEST, step=Options().step, reduction=SHARE * epsilon)
-            return solve(problem, self.programme(epsilon), start, enough)
-
-        coarse = ahead = minimiser(start)
-        spent, path = coarse.evaluations, self.programme(epsilon).value(coarse.J)
-        if known and known.path is not None and abs(path - known.path) <= TIE * path:
-            return replace(known, evaluations=spent)
+        spent, ahead, path, others = 0, start, list[Floats](), self.others
+        coarse: Solution | None = None
+        passed = np.zeros((0, 3)) if known is None or known.path is None else known.path
         while True:
-            epsilon /= RATIO
-            fine = minimiser(ahead)
-            theta = fine.theta + (fine.theta - coarse.theta) / (RATIO - 1)
-            limit = problem.evaluate(np.clip(theta, problem.lower, problem.upper), second=True)
-            spent += fine.evaluations + 1
-            if not limit.feasible or epsilon <= EXACT or self._equal(limit.J, ahead.J):
-                closer = limit.feasible and limit.J[self.objective] <= fine.J[self.objective]
-                best = limit if closer else fine.evaluation
-                return replace(fine, evaluation=best, evaluations=spent, path=path)
-            coarse, ahead = fine, replace(fine, evaluation=limit)
+            enough = replace(TIGHTEST, step=Options().step, reduction=SHARE * epsilon)
+            fine = solve(problem, self.programme(epsilon), ahead, enough)
+            spent += fine.evaluations
+            # what is minimised is exact to its own tolerance, the others in it to the root of that
+            path.append(np.array([epsilon, self.programme(epsilon).value(fine.J), others @ fine.J]))
+            apart = np.abs(passed - path[-1]) / np.maximum(path[-1], np.finfo(float).tiny)
+            if known and (apart <= [TIE, TIE, DISTINCT]).all(axis=1).any():
+                return replace(known, evaluations=spent)
+            if coarse is None:
+                ahead = fine
+            else:
+                theta = fine.theta + (fine.theta - coarse.theta) / (RATIO - 1)
+                limit = problem.evaluate(np.clip(theta, problem.lower, problem.upper), second=True)
+                spent += 1
+                if not limit.feasible or epsilon <= EXACT or self._equal(limit.J, ahead.J):
+                    closer = limit.feasible and limit.J[self.objective] <= fine.J[self.objective]
+                    best = limit if closer else fine.evaluation
+                    return replace(fine, evaluation=best, evaluations=spent, path=np.array(path))
+                ahead = replace(fine, evaluation=limit)
+            coarse, epsilon = fine, epsilon / RATIO
 
     def _equal(self, J: Floats, other: Floats) -> bool:
         """Return whether the first objective is as good in both, and so are the others."""

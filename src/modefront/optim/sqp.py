@@ -96,8 +96,9 @@ class Solution:
     # (n,) the point of the simplex that it was projected from, by normal-boundary intersection;
     # None of another programme
     beta: Floats | None = None
-    # of a lexicographic minimum, what was minimised where the path to it began; else None
-    path: float | None = None
+    # of a lexicographic minimum, of the minimisers on the path to it: epsilon, what is minimised,
+    # and the others in it, (., 3)
+    path: Floats | None = None
 
     @property
     def theta(self) -> Floats:
