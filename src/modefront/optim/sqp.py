@@ -35,7 +35,7 @@ from modefront._typing import Floats
 from modefront.optim.linearised import PENALTY, Linearised, UnitBox, augmented
 from modefront.optim.problem import DISTINCT, Evaluation, Problem, room, without_jump
 from modefront.optim.qp import QuadraticProgramme
-from modefront.optim.scalarisation import Scalarisation, Within, total
+from modefront.optim.scalarisation import MARGIN, Scalarisation, Within, total
 from modefront.work.codec import record
 from modefront.work.progress import ITERATION, note
 
@@ -150,40 +150,53 @@ def solve(
     known = known if known and known.converged else None
     if not start.feasible:
         return replace(start, status=Status.INFEASIBLE, evaluations=0)
-    best, beyond = _descend(problem, programme, start, options, known)
-    while best.status is Status.JUMP and beyond is not None and beyond.feasible:
-        here, moved = best, False
-        if end := _along(problem, programme, best, beyond):
-            spent = best.evaluations + end.evaluations
-            if total(programme, end.J) < total(programme, best.J):
-                best, beyond = _descend(problem, programme, end, options, known)
-                spent += best.evaluations
-                apart = (best.theta - here.theta) / (problem.upper - problem.lower)
-                moved = float(np.abs(apart).max()) > DISTINCT
-            best = replace(best, evaluations=spent)
-        if not moved:
+    best, jump = _descend(problem, programme, start, options, known)
+    while jump is not None:
+        end = jump.along(programme, best)
+        gains = end.feasible and total(programme, end.J) < total(programme, best.J)
+        spent = best.evaluations + end.evaluations
+        if not gains or end.status is Status.JUMP:
+            return replace(end if gains else best, evaluations=spent)
+        here = best
+        best, jump = _descend(problem, programme, end, options, known)
+        best = replace(best, evaluations=spent + best.evaluations)
+        if np.abs((best.theta - here.theta) / (problem.upper - problem.lower)).max() <= DISTINCT:
             break
     return best
 
 
-def _along(
-    problem: Problem, programme: Scalarisation, here: Solution, beyond: Evaluation
-) -> Solution | None:
-    """Return the best model along a jump, next to it; None where that is not known or not defined.
+@dataclass(frozen=True)
+class _Jump:
+    """A jump of the objectives of a problem, which a smooth one has not."""
 
-    ``beyond`` is a model on the other side.
-    """
-    smooth = without_jump(problem, here.evaluation, beyond)
+    problem: Problem
+    smooth: Problem
+    start: Evaluation  # of the smooth one, next to the jump
+
+    def along(self, programme: Scalarisation, here: Solution) -> Solution:
+        """Return the best model along a jump from one next to it.
+
+        Its status is `Status.JUMP` if it is stationary but for the jump.
+        """
+        slopes = self.start.dJ * (self.problem.upper - self.problem.lower)
+        units = np.linalg.norm([here.weights @ slopes[:-1], slopes[-1]], axis=1)
+        within = Within(programme, *np.maximum(units, np.finfo(float).tiny).tolist())
+        found, _ = _descend(self.smooth, within, begin(self.start), Options())
+        end = self.problem.evaluate(found.theta, second=True)
+        held = found.converged and abs(found.J[-1]) <= 2 * MARGIN * within.last
+        status = Status.JUMP if held else Status.EXHAUSTED
+        w = found.weights[:-1] * within.unit
+        return Solution(end, w, status, found.evaluations + 2)
+
+
+def _jump(problem: Problem, here: Evaluation, beyond: Evaluation) -> _Jump | None:
+    """Return the jump between two models next to each other, None where the problem knows none."""
+    smooth = without_jump(problem, here, beyond)
     if smooth is None:
         return None
     start = smooth.evaluate(here.theta, second=True)
-    slopes = start.dJ * (problem.upper - problem.lower)
-    units = np.linalg.norm([here.weights @ slopes[:-1], slopes[-1]], axis=1).tolist()
-    if not all(units):
-        return None
-    found, _ = _descend(smooth, Within(programme, *units), begin(start), Options())
-    end = begin(problem.evaluate(found.theta, second=True))
-    return replace(end, evaluations=found.evaluations + 2) if end.feasible else None
+    far = np.linalg.norm(start.dJ[-1] * (problem.upper - problem.lower))
+    return _Jump(problem, smooth, start) if -start.J[-1] <= 4 * DISTINCT * far else None
 
 
 # More than 60 lines: one step, with all that it changes.
@@ -193,8 +206,8 @@ def _descend(
     start: Solution,
     options: Options,
     known: Solution | None = None,
-) -> tuple[Solution, Evaluation | None]:
-    """Return a solution by steps that fall, and where those fail, the end of the last one."""
+) -> tuple[Solution, _Jump | None]:
+    """Return a solution by steps that fall, and the jump of the objectives that ends it, if any."""
     evaluation, count = start.evaluation, -1
     if not evaluation.derivatives:
         evaluation, count = problem.evaluate(evaluation.theta, second=True), 0
@@ -205,7 +218,7 @@ def _descend(
     radius, penalty = options.radius, PENALTY / programme.maximised.slope**2
     kappa: Floats | None = None
     rejected = False  # whether the last step was
-    beyond: Evaluation | None = None  # the end of the last step that was
+    sought = False  # whether a jump was sought at this model
     proposal = np.inf  # length of the last step that the trust region did not hold back
     calm: tuple[float, Solution] | None = None  # where, and how long, steps promised only rounding
     while True:
@@ -237,7 +250,7 @@ def _descend(
             status = Status.CONVERGED if proposal <= options.step else Status.JUMP
         here = Solution(evaluation, w, status or Status.EXHAUSTED, count)
         if status or count >= options.iterations:
-            return here, beyond
+            return here, None
 
         predicted, penalty = local.predicted(qp.B, s, kappa, penalty)
         noise = local.noise(kappa)
@@ -266,7 +279,7 @@ def _descend(
                 actual = merit(evaluation) - merit(new)
         ratio = (actual + noise) / (predicted + noise) if predicted > -noise else -1.0
         if ratio > 0:
-            evaluation, rejected = new, False
+            evaluation, rejected, sought = new, False, False
             local = ahead if new is ahead.evaluation else Linearised(unit, programme, new)
             S = local.x.H - local.G if evaluation.exact else S
             if ratio < POOR:
@@ -274,7 +287,11 @@ def _descend(
             elif ratio > GOOD and far >= radius:
                 radius = min(2 * radius, 1.0)
         else:
-            radius, rejected, beyond = far / 4, True, new
+            radius, rejected = far / 4, True
+            if radius <= DISTINCT and not sought:
+                sought, jump = True, _jump(problem, evaluation, new)
+                if jump:
+                    return Solution(evaluation, w, Status.JUMP, count), jump
 
 
 def learned_from(S: Floats, before: Evaluation, after: Evaluation) -> Floats:
