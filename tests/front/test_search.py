@@ -33,6 +33,7 @@ from modefront.front.proposers.evolution import Evolution
 from modefront.front.proposers.polish import Polish
 from modefront.front.proposers.starts import SURE, Minima, Starts
 from modefront.front.search import (
+    BATCH,
     USUAL,
     Offer,
     Outcome,
@@ -211,6 +212,25 @@ def test_a_front_of_two_groups_has_at_most_twice_the_points_that_are_asked_for(
     front = pareto_front(box(function, [-1.5, -1.5], [2, 1.5]), ONES, Pareto(points=points))
     assert points <= 2 * len(front_points(front))
     assert len(front_points(front)) <= 2 * points
+
+
+def test_a_model_that_is_as_good_as_can_be_has_the_usual_starts_only() -> None:
+    """Both objectives are least, 0.1 and 0.2, where one model is best, among minima of waves."""
+
+    def function(theta: Floats) -> Derivatives:
+        u = theta - np.array([0.3, -0.6])
+        J = 0.1 + (u**2 + np.sin(4 * u) ** 2).sum()
+        dJ, H = 2 * u + 4 * np.sin(8 * u), np.diag(2 + 32 * np.cos(8 * u))
+        return np.array([J, 2 * J]), np.array([dJ, 2 * dJ]), np.array([H, 2 * H])
+
+    usual = range(USUAL, USUAL + BATCH)
+    for least, starts in ((None, range(usual.stop, 100)), (np.array([0.1, 0.2]), usual)):
+        problem = box(function, [-2, -2], [2, 2])
+        front = pareto_front(problem, ONES, Pareto(points=3), seed=1, least=least)
+        for edge in front.edges:
+            np.testing.assert_allclose(edge.best.J, [0.1, 0.2], atol=1e-9)
+            assert edge.starts in starts
+            assert not edge.doubtful
 
 
 @pytest.mark.parametrize("budget", [1, 50, 150])
