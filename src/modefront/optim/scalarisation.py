@@ -92,7 +92,7 @@ class LogSum:
 
 
 @dataclass(frozen=True)
-class Within:
+class Constrained:
     """A programme of all objectives but the last, g, which a penalty keeps below zero.
 
     What is minimised and g are taken over a unit each: their typical slopes.
@@ -131,7 +131,7 @@ def total(programme: "Scalarisation", J: Floats) -> float:
     return programme.value(J) + float(y.max() if y.size else 0.0)
 
 
-Scalarisation = Linear | LogSum | Within
+Scalarisation = Linear | LogSum | Constrained
 """A smooth function f of the objectives and a maximum of linear ones, minimised together: ``value``
 returns f, ``gradient`` df/dJ (n,), ``hessian`` d2f/dJ2 (n, n), and ``maximised`` is C J - d."""
 

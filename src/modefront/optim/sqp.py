@@ -35,7 +35,7 @@ from modefront._typing import Floats
 from modefront.optim.linearised import PENALTY, Linearised, UnitBox, augmented
 from modefront.optim.problem import DISTINCT, Evaluation, Problem, room, without_jump
 from modefront.optim.qp import QuadraticProgramme
-from modefront.optim.scalarisation import MARGIN, Scalarisation, Within, total
+from modefront.optim.scalarisation import MARGIN, Constrained, Scalarisation, total
 from modefront.work.codec import record
 from modefront.work.progress import ITERATION, note
 
@@ -180,7 +180,7 @@ class _Jump:
         """
         slopes = self.start.dJ * (self.problem.upper - self.problem.lower)
         units = np.linalg.norm([here.weights @ slopes[:-1], slopes[-1]], axis=1)
-        within = Within(programme, *np.maximum(units, np.finfo(float).tiny).tolist())
+        within = Constrained(programme, *np.maximum(units, np.finfo(float).tiny).tolist())
         found, _ = _descend(self.smooth, within, begin(self.start), Options())
         end = self.problem.evaluate(found.theta, second=True)
         held = found.converged and abs(found.J[-1]) <= 2 * MARGIN * within.last
