@@ -197,16 +197,25 @@ def lack_of_fit(noise: NoiseModel, found: Evaluation) -> Floats:
 def freed(noise: NoiseModel, theta: Floats) -> Freed | None:
     """Return the most probable model without the bounds that hold theta (p,).
 
-    None where no bound holds it, and where the search without them does not converge.
+    They are widened again while they hold that model, and what that gains grows or is more than
+    right ones may. None where no bound holds theta, or no search without them converges.
     """
-    lower, upper = noise.problem.lower, noise.problem.upper
-    sides = at_bounds(theta, lower, upper)
-    if not sides.any():
-        return None
-    below, above = wider(lower, upper)
-    lower, upper = np.where(sides < 0, below, lower), np.where(sides > 0, above, upper)
-    problem = replace(noise.problem, lower=lower, upper=upper)
-    return _lower(replace(noise, problem=problem), theta)
+    lower, upper, found = noise.problem.lower, noise.problem.upper, None
+    held = sides = at_bounds(theta, lower, upper)
+    gain = 0.0
+    while held.any():
+        below, above = wider(lower, upper)
+        lower, upper = np.where(held < 0, below, lower), np.where(held > 0, above, upper)
+        problem = replace(noise.problem, lower=lower, upper=upper)
+        last, before = _lower(replace(noise, problem=problem), theta), gain
+        if last is None:
+            break
+        gain = last.less - (found.less if found else 0.0)
+        held = np.where(at_bounds(last.theta, lower, upper) == sides, held, 0)
+        if found and held.any() and gain < min(before, chdtri(1, CHANCE)):
+            break
+        found = last
+    return found
 
 
 def excluding(sides: Ints, theta: Floats, misfit: Floats, free: Freed) -> list[int]:
