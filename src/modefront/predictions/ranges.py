@@ -83,9 +83,8 @@ class Equivalent:
         size = abs(reached) if reached else 1.0
         while start is not None:
             found = self._solve(q, size, sign, start)
-            value = np.nan if found is None else q(found)
-            if found is not None and sign * value < sign * reached:
-                theta, reached = found, value
+            if found is not None and sign * q(found) < sign * reached:
+                theta, reached = found, q(found)
             elif start is not self.model.theta:
                 break
             start = self._farther(q, sign, theta, reached)

@@ -200,9 +200,8 @@ def freed(noise: NoiseModel, theta: Floats) -> Freed | None:
     They are widened again while they hold that model, and what that gains grows or is more than
     right ones may. None where no bound holds theta, or no search without them converges.
     """
-    lower, upper, found = noise.problem.lower, noise.problem.upper, None
+    lower, upper, found, gain = noise.problem.lower, noise.problem.upper, None, 0.0
     held = sides = at_bounds(theta, lower, upper)
-    gain = 0.0
     while held.any():
         below, above = wider(lower, upper)
         lower, upper = np.where(held < 0, below, lower), np.where(held > 0, above, upper)
