@@ -69,6 +69,32 @@ def test_two_combinations_that_are_open() -> None:
     assert greatest == pytest.approx(6.0, rel=1e-6)
 
 
+class Series:
+    """The exactly known frequency of two springs in series: 0.4 / x + 0.7 / y = 1."""
+
+    objectives = ("a",)
+    lower, upper, start = np.full(2, 0.6), np.full(2, 1.6), np.ones(2)
+
+    def evaluate(
+        self, theta: Floats, *, derivatives: bool = True, second: bool = False
+    ) -> Evaluation:
+        parts = np.array([0.4, 0.7]) / theta
+        f = parts.sum() ** -0.5
+        r, dr = np.array([f - 1.0]), 0.5 * f**3 * (parts / theta)[None]
+        J, H = np.array([r @ r]), 2 * (dr.T @ dr)[None]
+        return Evaluation(theta, J, 2 * r[None] @ dr, H, residuals=(Residual(r, dr),))
+
+
+def test_ends_of_curved_sets_at_bounds_are_found() -> None:
+    """From any model x / y reaches from y = 1.6 to x = 1.6."""
+    for x in (0.9, 1.1, 1.3, 1.5):
+        theta, ends = np.array([[x, 0.7 / (1 - 0.4 / x)]]), (0.4 / 0.9, 1.2 / 0.7)
+        front = Sampled(theta, Series().evaluate(theta[0]).J[None], is_open=True)
+        for sign, end in zip((1.0, -1.0), ends, strict=True):
+            found = extreme(Series(), front, np.ones(1), lambda x: x[0] / x[1], sign, 1e-4)
+            assert found == pytest.approx(end, rel=1e-3)
+
+
 class Known:
     """Two groups that know all parameters: the squared distances from two models."""
 

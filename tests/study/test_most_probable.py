@@ -229,15 +229,16 @@ def test_a_bound_that_holds_the_model_is_named(tmp_path: Path) -> None:
         assert (text in data.attrs["verdict"]) == bool(at)
 
 
+@pytest.mark.parametrize("bounds", [(0.8, 1.1), (0.99, 1.01)])
 def test_the_bound_that_excludes_the_truth_is_named_with_the_value_beyond_it(
-    tmp_path: Path,
+    bounds: tuple[float, float],
 ) -> None:
-    """The first spring is 1.4, and at most 1.1 is allowed."""
+    """The first spring is 1.4, and less is allowed: 1.1, or next to nothing."""
     names = ("k1", "k2")
     model = mf.chain(names, [1.0, 1.0], [1000.0, 1000.0], stiffness_parameters=names)
     modes = model.modes(np.array([1.4, 1.0]), 2)
     data = mf.modal_data(modes.frequency, modes.phi.T, model.sensors)
-    parameters = [mf.Parameter(name, nominal=1.0, bounds=(0.8, 1.1)) for name in names]
+    parameters = [mf.Parameter(name, nominal=1.0, bounds=bounds) for name in names]
     groups = [mf.Group("frequencies", frequency="all"), mf.Group("shapes", shape="all")]
     problem = mf.updating_problem(model, data, groups, parameters=parameters)
     results = mf.solve(problem, points=2, search=SEARCH, identifiability=OPEN)
@@ -245,6 +246,8 @@ def test_the_bound_that_excludes_the_truth_is_named_with_the_value_beyond_it(
     (said,) = [text for text in results.verdict if "bound" in text]
     assert "With k1 = 1.4, errors of frequencies are " in said
     assert "k2 = " not in said.split("With")[1]
+    assert results["trust"].values[0] == "partly"
+    assert "k1: fixed" not in "".join(results.verdict)
 
 
 def test_wider_bounds_are_farther_by_their_range_or_ratio() -> None:

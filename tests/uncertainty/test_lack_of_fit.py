@@ -1,6 +1,7 @@
 """Errors beside the scatter of data sets tell whether a model lacks something."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -61,6 +62,18 @@ def test_of_right_models_the_probabilities_are_uniform() -> None:
 def test_a_spring_that_the_model_lacks_shows_in_several_sets_only() -> None:
     assert (lack(problem_of(1, SPRING)) < CHANCE).any()
     assert np.isnan(lack(problem_of(1, SPRING, sets=1))).all()
+
+
+def test_copies_of_a_data_set_say_nothing_of_errors() -> None:
+    problem = problem_of(1, 0.0)
+    data = problem.data
+    frequency = np.broadcast_to(data.frequency[:1], data.frequency.shape)
+    copied = replace(problem, data=replace(data, frequency=frequency))
+    found, noise = lack(copied), NoisePrior().of(copied, "sets")
+    assert noise is not None
+    assert np.isnan(found[0])
+    assert found[1] > CHANCE
+    assert noise.level[0] == 1
 
 
 @pytest.mark.parametrize("sets", [1, 12])

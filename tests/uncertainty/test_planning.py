@@ -1,5 +1,7 @@
 """Gains of further measurements against problems that have them."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -69,3 +71,20 @@ def test_a_further_sensor_narrows_as_if_it_had_been_there() -> None:
     expected = 1 - deviations(after, w, precision) / deviations(before, w, precision)
     assert further["candidate_gain"][0] == pytest.approx(expected, rel=0.3)
     assert further["candidate_gain"].min() >= 0
+
+
+def test_of_what_no_group_has_nothing_is_gained() -> None:
+    """Where frequencies alone count, shapes of a mode or at a sensor tell nothing more."""
+    of = []
+    for modes, sensors in ((2, 2), (3, 2)):
+        problem = noise_of(modes, sensors).problem
+        noise = NoisePrior().of(replace(problem, groups=problem.groups[:1]), "std")
+        assert noise is not None
+        of.append(noise)
+    before, after = of
+    found = before.problem.evaluate(THETA)
+    further, w = candidates(before, found), before.logs.gradient(found.J)
+    precision = np.full(3, 12 / 2.7**2)
+    expected = 1 - deviations(after, w, precision) / deviations(before, w, precision)
+    assert further["candidate_sensor"] == [""]
+    assert further["candidate_gain"][0] == pytest.approx(expected, rel=1e-6)

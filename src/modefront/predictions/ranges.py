@@ -28,7 +28,7 @@ from modefront.front.dominance import undominated
 from modefront.front.subproblems import RHO
 from modefront.optim.lexicographic import EXACT, RANK, TIE
 from modefront.optim.problem import Evaluation, Problem, Wrapped, infeasible, room
-from modefront.optim.scalarisation import achievement
+from modefront.optim.scalarisation import achievement, weighted
 from modefront.optim.sqp import Options, Solution, begin, solve
 from modefront.options import number
 
@@ -41,6 +41,7 @@ SAME = 1e-4
 below any error of measurement."""
 
 FACTORS = (1e1, 1e2, 1e3, 1e4)  # penalties on violations, over the size of the prediction
+NEAR = 1e-3  # weight of distances from a model, over the ranges, beside the equations
 _ENOUGH = Options(step=1e-5, reduction=1e-8, iterations=40)  # a range needs a thousandth of itself
 SLACK = number("a share of 0 or more", least=0)
 
@@ -82,9 +83,8 @@ class Equivalent:
         size = abs(reached) if reached else 1.0
         while start is not None:
             found = self._solve(q, size, sign, start)
-            value = np.nan if found is None else float(found.J[-1]) * size
-            if found is not None and sign * value < sign * reached:
-                theta, reached = found.theta, value
+            if found is not None and sign * q(found) < sign * reached:
+                theta, reached = found, q(found)
             elif start is not self.model.theta:
                 break
             start = self._farther(q, sign, theta, reached)
@@ -137,8 +137,8 @@ class Equivalent:
         grown = np.sqrt((1 + max(self.slack, SAME)) * self.model.J)
         return np.asarray((grown + np.sqrt(EXACT) * np.array(self._lengths)) ** 2)
 
-    def _solve(self, q: Values, size: float, sign: float, start: Floats) -> Solution | None:
-        """Return the extreme, with q over ``size`` as last objective, to which a start leads.
+    def _solve(self, q: Values, size: float, sign: float, start: Floats) -> Floats | None:
+        """Return the model (p,) of the extreme to which a start leads; q is about ``size``.
 
         None where that is no equivalent model.
         """
@@ -151,31 +151,57 @@ class Equivalent:
         target = Wrapped(self.problem, self._with(q, size), ("",) * (n + 1))
         w, found = np.append(np.zeros(n), sign), begin(target.evaluate(start))
         rows = np.pad(C, ((0, 0), (0, 1)))
+        best: Floats | None = None
         for factor in FACTORS:
             programme = achievement(w, rows, d, factor)
             found = solve(target, programme, begin(found.evaluation), _ENOUGH)
-            J = self.problem.evaluate(found.theta, derivatives=False).J
-            if (self.level * (1 + SAME) >= J).all():
-                return found
-        return None
+            for theta in (found.theta, self._nearest(found.theta)):
+                J = self.problem.evaluate(theta, derivatives=False).J
+                if (self.level * (1 + SAME) >= J).all():
+                    if best is None or sign * q(theta) < sign * q(best):
+                        best = theta
+                    if theta is found.theta:
+                        return best
+        return best
+
+    def _nearest(self, theta: Floats) -> Floats:
+        """Return the model (p,) nearest to another one at which the equations hold.
+
+        Solutions miss them where they are at a bound: q is only known to change along them.
+        """
+        if self.slack > 0:
+            return theta
+
+        def evaluation(problem: Problem, x: Floats, _: bool, __: bool) -> Evaluation:
+            found = problem.evaluate(x)
+            if not found.feasible:
+                return infeasible(x, 1)
+            c, dc = self._missing(found)
+            r = np.append(c, NEAR * (x - theta) / self.span)
+            dr = np.vstack([dc, np.diag(NEAR / self.span)])
+            return Evaluation(x, np.array([r @ r]), 2 * r[None] @ dr, 2 * (dr.T @ dr)[None])
+
+        target = Wrapped(self.problem, evaluation, ("",))
+        return solve(target, weighted(np.ones(1)), begin(target.evaluate(theta))).theta
+
+    def _missing(self, found: Evaluation) -> tuple[Floats, Floats]:
+        """Return what is missing in the equations (k,) at a model, and its derivatives (k, p)."""
+        (r, dr), (r0, _) = self._residuals(found), self._residuals(self.model)
+        return self.equations[0] @ (r - r0), self.equations[0] @ dr / self.span
 
     def _with(self, q: Values, size: float) -> Callable[[Problem, Floats, bool, bool], Evaluation]:
         """Return the evaluation of the equations, or the objectives, and of q over its size."""
-        rows = self.equations[0] if self.slack == 0 else None
-        r0, _ = self._residuals(self.model)
 
         def evaluation(problem: Problem, theta: Floats, _: bool, __: bool) -> Evaluation:
             found, value = problem.evaluate(theta), q(theta) / size
-            n = (found.J.size if rows is None else len(rows)) + 1
+            c, dc, H, along = found.J, found.dJ, found.H, np.eye(theta.size)
+            n = (found.J.size if self.slack else len(self.equations[0])) + 1
             if not (found.feasible and np.isfinite(value)):
                 return infeasible(theta, n)
-            if rows is None:
-                c, dc, H, along = found.J, found.dJ, found.H, np.eye(theta.size)
-            else:
-                r, dr = self._residuals(found)
-                c, dc = rows @ (r - r0), rows @ dr / self.span
+            if self.slack == 0:
+                c, dc = self._missing(found)
                 H = np.zeros((n - 1, theta.size, theta.size))
-                along = np.linalg.svd(rows @ dr)[2][n - 1 :].T
+                along = np.linalg.svd(dc * self.span)[2][n - 1 :].T
             dq = self._slopes(q, theta, along) / size
             H = np.concatenate([H, np.zeros((1, theta.size, theta.size))])
             return Evaluation(theta, np.append(c, value), np.vstack([dc, dq]), H)

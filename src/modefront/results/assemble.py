@@ -19,7 +19,7 @@ from modefront.residuals.problem import UpdatingProblem
 from modefront.results.findings import Determinations, as_values, findings
 from modefront.results.schema import FORMAT, Values, described
 from modefront.rounding import COMPUTED
-from modefront.uncertainty.inference import CHANCE, Inference, refused
+from modefront.uncertainty.inference import CHANCE, Inference, excluding, refused
 from modefront.uncertainty.prediction import summary
 from modefront.uncertainty.prior import NoiseModel, prior_widths
 
@@ -281,7 +281,8 @@ def with_intervals(data: ArrayDataset, noise: NoiseModel, inference: Inference) 
 
     A quantile is such that the next draw is below it with its probability. Of draws that do not
     settle, and of a model that lacks something or cannot be used, none is called determined, nor is
-    a parameter that a bound holds, and not the data.
+    a parameter that a bound holds, and not the data. Of one whose bound excludes what fits, these
+    say something.
     """
     draws, fit, widths = inference.draws, inference.fit, prior_widths(noise.problem)
     freed, unfixed = inference.freed, inference.unfixed
@@ -293,6 +294,8 @@ def with_intervals(data: ArrayDataset, noise: NoiseModel, inference: Inference) 
     share = (interval[:, 2] - interval[:, 0]) / widths
     known = (share < DETERMINED) & ~held & (settled and not (fit["lack_of_fit"] < CHANCE).any())
     place = np.where(known, 0, np.where(share > OPEN, 2, 1))
+    if freed:
+        place[excluding(side, theta, fit["misfit"], freed)] = 1
     along = np.full(data["error"].values.shape, np.nan)
     along[front_points(data)] = inference.along
     values = {

@@ -197,16 +197,24 @@ def lack_of_fit(noise: NoiseModel, found: Evaluation) -> Floats:
 def freed(noise: NoiseModel, theta: Floats) -> Freed | None:
     """Return the most probable model without the bounds that hold theta (p,).
 
-    None where no bound holds it, and where the search without them does not converge.
+    They are widened again while they hold that model, and what that gains grows or is more than
+    right ones may. None where no bound holds theta, or no search without them converges.
     """
-    lower, upper = noise.problem.lower, noise.problem.upper
-    sides = at_bounds(theta, lower, upper)
-    if not sides.any():
-        return None
-    below, above = wider(lower, upper)
-    lower, upper = np.where(sides < 0, below, lower), np.where(sides > 0, above, upper)
-    problem = replace(noise.problem, lower=lower, upper=upper)
-    return _lower(replace(noise, problem=problem), theta)
+    lower, upper, found, gain = noise.problem.lower, noise.problem.upper, None, 0.0
+    held = sides = at_bounds(theta, lower, upper)
+    while held.any():
+        below, above = wider(lower, upper)
+        lower, upper = np.where(held < 0, below, lower), np.where(held > 0, above, upper)
+        problem = replace(noise.problem, lower=lower, upper=upper)
+        last, before = _lower(replace(noise, problem=problem), theta), gain
+        if last is None:
+            break
+        gain = last.less - (found.less if found else 0.0)
+        held = np.where(at_bounds(last.theta, lower, upper) == sides, held, 0)
+        if found and held.any() and gain < min(before, chdtri(1, CHANCE)):
+            break
+        found = last
+    return found
 
 
 def excluding(sides: Ints, theta: Floats, misfit: Floats, free: Freed) -> list[int]:
@@ -308,8 +316,8 @@ def candidates(noise: NoiseModel, evaluation: Evaluation) -> dict[str, Any]:
     """Return what could be measured besides the data, as values of results.
 
     That are a model mode at all sensors, by its frequency, or all measured modes at a further
-    sensor, and the shares (candidates, p) by which the standard deviation of a parameter becomes
-    less. ``evaluation`` is most probable.
+    sensor, by what groups have of these, and the shares (candidates, p) by which the standard
+    deviation of a parameter becomes less. ``evaluation`` is most probable.
     """
     span = noise.problem.upper - noise.problem.lower
     C = np.linalg.inv(noise.precision(evaluation) * np.outer(span, span))
@@ -333,27 +341,29 @@ def _further(noise: NoiseModel, evaluation: Evaluation) -> Iterator[tuple[float,
     modes, pairs = problem.modes(evaluation.theta)
     w = noise.logs.gradient(evaluation.J)
 
-    def size(kind: str, std: Floats, values: Floats) -> float:
-        """Return the root of the weight of a group of this kind over the expected error."""
+    def size(kinds: Sequence[str], std: Floats, values: Floats) -> float:
+        """Return the root of the weight of groups of these kinds over the error, 0 of none."""
         known = np.isfinite(values) & (values != 0)
         tau = float(np.median((std / np.where(known, values, 1.0))[known])) if known.any() else 1.0
-        own = [v for v, x in zip(w, problem.groups, strict=True) if x.modes_of(kind)]
-        return float(np.sqrt(np.mean(own or [1.0]))) / tau
+        groups = zip(w, problem.groups, strict=True)
+        own = [v for v, x in groups if any(map(x.modes_of, kinds))]
+        return float(np.sqrt(np.mean(own or [0.0]))) / tau
 
     top = np.nanmax(np.abs(data.shape), axis=2, initial=0.0, keepdims=True)
-    of_shape = size("shape", data.shape_std, np.where(np.isfinite(data.shape), top, 0.0))
-    of_frequency = size("frequency", data.frequency_std, data.frequency)
+    seen_at = np.where(np.isfinite(data.shape), top, 0.0)
+    of_shape = size(("shape", "subspace"), data.shape_std, seen_at)
+    of_frequency = size(["frequency"], data.frequency_std, data.frequency)
 
     def shape(q: int, sensors: Bools) -> tuple[Floats, Floats]:
         """Return a shape over expected errors, and its derivatives, at some sensors."""
         unit = of_shape / np.abs(modes.phi[:, q]).max()
         return unit * modes.phi[sensors, q], unit * modes.dphi[sensors, q]
 
-    measured: Bools = np.asarray(np.isfinite(data.shape).any(axis=0))
+    measured: Bools = np.asarray(np.isfinite(data.shape).any(axis=0) & (of_shape > 0))
     seen: Bools = np.asarray(measured.any(axis=0))
     for q in sorted(set(range(modes.lam.size)) - set(pairs.index.tolist())):
         parts, f = [], modes.frequency[q]
-        if np.isfinite(data.frequency).any() and f > 0:
+        if of_frequency and f > 0:
             parts.append(of_frequency * modes.dfrequency[q][None] / f)
         if modes.phi[seen, q].any():
             chi, dchi = shape(q, seen)

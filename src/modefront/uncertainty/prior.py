@@ -69,6 +69,8 @@ class NoisePrior(Checked):
         scaled = replace(problem, data=data, groups=groups)
         parts = [[member.independent() for member in row] for row in scaled.members]
         a, S, d = np.array([np.sum(row, axis=0) for row in parts]).T
+        least = NEGLIGIBLE * scaled.margins(*np.full((2, len(data.modes)), 2.0))
+        d = np.where(least**2 < S, d, 0.0)  # copies of a data set say nothing of errors
         level = (self.weight + S) / (self.weight + d) if source == "sets" else np.ones(a.size)
         plural = {"frequency": "frequencies", "shape": "shapes"}
         said = [f"{plural[kind]} to {100 * unsaid[kind]:g} %" for kind in assumed if kind in unsaid]
