@@ -256,6 +256,22 @@ def test_a_model_that_takes_a_place_after_the_search_is_solved_for_from_there() 
     assert all(point.solution.converged for point in front.points)
 
 
+def test_the_edge_of_an_exact_fit_is_no_model_on_the_way_there() -> None:
+    names = ("k1", "k2", "k3")
+    springs = 1e3 * np.random.default_rng(27).uniform(0.7, 1.3, 4)
+    truth = mf.chain(names, [1.0] * 4, springs.tolist()).modes(np.ones(3), 3)
+    scales = ["k1", "k2", "k3", "k2"]
+    model = mf.chain(names, [1.0] * 4, [1e3] * 4, stiffness_parameters=scales)
+    data = mf.modal_data(truth.frequency, truth.phi.T, model.sensors)
+    first, others = mf.Group("first", shape=[1]), mf.Group("others", shape=[2, 3])
+    groups = [mf.Group("frequencies", frequency="all"), first, others]
+    parameters = [mf.Parameter(name, nominal=1.0, bounds=(0.3, 3.0)) for name in names]
+    problem = mf.updating_problem(model, data, groups, parameters=parameters)
+    edge = pareto_front(problem, np.array([3.0, 4.0, 8.0]), Pareto(points=4), seed=1).edges[0].best
+    assert edge.converged
+    assert edge.J[0] < 1e-18, "three parameters fit three frequencies"
+
+
 @pytest.mark.slow(3)
 def test_what_a_search_leaves_open_at_its_budget_is_a_finding() -> None:
     names = ["k1", "k2", "k3"]
