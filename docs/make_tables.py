@@ -74,21 +74,29 @@ def key_table(tables: Mapping[str, Schema]) -> str:
         several = table.get("type") == "array"
         keys = table["items"] if several else table
         first = f"`[[{name}]]`" if several else f"`{name}`"
-        for key, schema in keys["properties"].items():
-            lines = schema.get("description", "").split("\n")
-            default = "none"
-            if lines[-1].startswith(WITHOUT):
-                default = lines.pop().removeprefix(WITHOUT)
-            elif key in keys.get("required", ()):
-                default = "required"
-            elif "default" in schema:
-                default = value(schema["default"])
-            meaning, expected = lines if len(lines) == 2 else ("", lines[0])
-            chosen = "enum" in schema and len(schema["enum"]) == 1
-            if not chosen:
-                cells.append([first, f"`{key}`", expected, meaning, default])
-                first = ""
+        for of_key in key_cells(keys):
+            cells.append([first, *of_key])
+            first = ""
     return "".join(rows(["table", "key", "value", "meaning", "default"], cells))
+
+
+def key_cells(keys: Schema, outer: str = "") -> Iterator[list[str]]:
+    """Yield the cells of each key of a table, and of those of a table in it."""
+    for key, schema in keys["properties"].items():
+        lines = schema.get("description", "").split("\n")
+        default = "none"
+        if lines[-1].startswith(WITHOUT):
+            default = lines.pop().removeprefix(WITHOUT)
+        elif key in keys.get("required", ()):
+            default = "required"
+        elif "default" in schema:
+            default = value(schema["default"])
+        meaning, expected = lines if len(lines) == 2 else ("", lines[0])
+        chosen = "enum" in schema and len(schema["enum"]) == 1
+        if not chosen:
+            yield [f"`{outer}{key}`", expected, meaning, default]
+            if "properties" in schema and "allOf" not in schema:
+                yield from key_cells(schema, f"{outer}{key}.")
 
 
 def value(default: Any) -> str:

@@ -65,7 +65,8 @@ def test_results_are_shown_in_a_few_lines(folder: Path) -> None:
     compared = mf.compare([folder / "results"])
     for shown in (
         *(study, study.problem, study.problem.data, mf.check(study), results, results.reference),
-        *(results.reference.modes(2), results.shapes(0), compared, compared.fronts[0]),
+        *(results.reference.modes(2), results.shapes(0), results.plot),
+        *(compared, compared.fronts[0]),
     ):
         assert_short(shown)
     said = json.loads(as_json(results.data))["remarks"]

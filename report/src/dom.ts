@@ -63,7 +63,7 @@ export function choice(
 export function sized(element: Element, draw: (width: number) => void): void {
   let last = 0;
   new ResizeObserver(() => {
-    const width = Math.floor(element.clientWidth);
+    const width = Math.floor(element.getBoundingClientRect().width);
     if (width > 0 && width !== last) draw((last = width));
   }).observe(element);
 }

@@ -255,6 +255,43 @@ def test_at_its_budget_a_search_ends_and_says_what_did_not_converge(budget: int)
     assert front.open
 
 
+def test_a_model_that_takes_a_place_after_the_search_is_solved_for_from_there() -> None:
+    names, rng = ("k1", "k2", "k3"), np.random.default_rng(3)
+    sensors, springs = {"low": 0, "middle": 2, "top": 4}, [22e3, 18e3, 24e3, 20e3, 16e3]
+    truth = mf.chain(names, [10.0] * 5, springs, sensors=sensors).modes(np.ones(3), 4)
+    shapes = truth.phi.T / np.abs(truth.phi.T).max(axis=1, keepdims=True)
+    shapes = shapes + 0.02 * rng.standard_normal((2, 4, 3))
+    frequency = truth.frequency * (1 + 0.004 * rng.standard_normal((2, 4)))
+    scales = ["k1", "k2", "k3", "", "k2"]
+    model = mf.chain(names, [10.0] * 5, [2e4] * 5, stiffness_parameters=scales, sensors=sensors)
+    data = mf.modal_data(frequency, shapes, sensors, frequency_std=0.004 * frequency)
+    groups = [
+        mf.Group("frequencies", frequency="all", scale="std"),
+        *(mf.Group("low", shape=[1, 2]), mf.Group("high", shape=[3, 4])),
+    ]
+    parameters = [mf.Parameter(name, nominal=1.0, bounds=(0.3, 3.0)) for name in names]
+    problem = mf.updating_problem(model, data, groups, parameters=parameters)
+    front = pareto_front(problem, np.array([4.0, 6.0, 6.0]), Pareto(points=4), seed=1)
+    assert not front.open, "far from its budget"
+    assert all(point.solution.converged for point in front.points)
+
+
+def test_the_edge_of_an_exact_fit_is_no_model_on_the_way_there() -> None:
+    names = ("k1", "k2", "k3")
+    springs = 1e3 * np.random.default_rng(27).uniform(0.7, 1.3, 4)
+    truth = mf.chain(names, [1.0] * 4, springs.tolist()).modes(np.ones(3), 3)
+    scales = ["k1", "k2", "k3", "k2"]
+    model = mf.chain(names, [1.0] * 4, [1e3] * 4, stiffness_parameters=scales)
+    data = mf.modal_data(truth.frequency, truth.phi.T, model.sensors)
+    first, others = mf.Group("first", shape=[1]), mf.Group("others", shape=[2, 3])
+    groups = [mf.Group("frequencies", frequency="all"), first, others]
+    parameters = [mf.Parameter(name, nominal=1.0, bounds=(0.3, 3.0)) for name in names]
+    problem = mf.updating_problem(model, data, groups, parameters=parameters)
+    edge = pareto_front(problem, np.array([3.0, 4.0, 8.0]), Pareto(points=4), seed=1).edges[0].best
+    assert edge.converged
+    assert edge.J[0] < 1e-18, "three parameters fit three frequencies"
+
+
 @pytest.mark.slow(3)
 def test_what_a_search_leaves_open_at_its_budget_is_a_finding() -> None:
     names = ["k1", "k2", "k3"]

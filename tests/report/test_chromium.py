@@ -289,6 +289,10 @@ def test_three_groups_have_parallel_coordinates_and_pairs(tmp_path: Path, opened
     front = page.view("front")
     assert front.locator("svg").count() >= 1 + 3
     assert front.locator("path.across").count() == len(front_points(three_groups()))
+    tops = front.locator(".pairs svg").evaluate_all(
+        "(all) => all.map((x) => x.getBoundingClientRect().top)"
+    )
+    assert tops[0] == tops[1] < tops[2], "two in a row, whatever part of a pixel the card has"
     shape = page.view("mode shape")
     assert "they stand in their order" in shape.inner_text()
     assert shape.locator(".overlay text").all_text_contents() == ["deck", "pier"]

@@ -187,8 +187,13 @@ def test_a_run_whose_scheduler_is_gone_ends_and_a_later_one_goes_on(tmp_path: Pa
 def test_a_cluster_that_is_none_is_refused_in_words(monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("distributed")
     monkeypatch.setattr("modefront.work.workers.ANSWER", 0.3)
-    with pytest.raises(InputError, match="--scheduler: expected an address like tcp"):
-        Cluster("nonsense:////")
+    ignored: list[object] = []
+    monkeypatch.setattr(sys, "unraisablehook", ignored.append)
+    for address in ("nonsense:////", "tls://127.0.0.1:9"):  # no such scheme, no certificates
+        with pytest.raises(InputError, match="--scheduler: expected an address like tcp"):
+            Cluster(address)
+    gc.collect()
+    assert not ignored, "a client that was never open is closed in silence, and at once"
     with pytest.raises(UnfinishedError, match=r"no Dask scheduler answers at tcp://127.0.0.1:9"):
         Cluster("tcp://127.0.0.1:9")
 

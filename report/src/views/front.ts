@@ -94,7 +94,7 @@ export function frontView(state: State, aspiration: Aspiration, tip: Tip): HTMLE
     h(
       "p",
       { class: "lede" },
-      "Every mark is a model. e = √(J / a) is the relative error of a group, a the number of its measured properties; ",
+      "Every mark is a model. e = √(J / a) is the root mean square error of a group, a the number of its measured properties; ",
       `better models lie towards the ${groups.length === 2 ? "lower left" : "left"}. `,
       state.current.noise.every((x) => x !== null)
         ? "Within the shaded field, models differ from the reference by less than noise. "

@@ -19,16 +19,15 @@ export function macView(state: State, tip: Tip): HTMLElement {
     if (!of) return h("p", { class: "note" }, "These results hold the MAC of the pairs alone.");
     const count = of[0]?.length ?? 0;
     const paired = front.pairedMode?.[state.point];
-    const many = count > 5;
-    const head = h("tr", {}, h("td", {}, many ? "model" : ""));
+    const head = h("tr", {}, h("td", {}, "model"));
     for (let q = 0; q < count; q++) {
       const f = front.modelFrequency?.[state.point]?.[q];
       head.append(
         h(
           "th",
           { scope: "col" },
-          many ? `${q + 1}` : `model ${q + 1}`,
-          h("small", {}, many ? number(f, 3) : `${number(f, 3)} Hz`),
+          `${q + 1}`,
+          h("small", {}, number(f, 3)),
         ),
       );
     }
@@ -49,15 +48,13 @@ export function macView(state: State, tip: Tip): HTMLElement {
       );
       return h("tr", {}, name, ...cells);
     });
-    const table = h(
+    return h(
       "table",
-      { class: `matrix${many ? " many" : ""}${count > 9 ? " tiny" : ""}` },
+      { class: `matrix${count > 9 ? " tiny" : ""}` },
       h("caption", { class: "hidden" }, "MAC of measured and model modes"),
       h("thead", {}, head),
       h("tbody", {}, ...body),
     );
-    if (many) table.style.minWidth = `${84 + (count > 9 ? 34 : 38) * count}px`;
-    return table;
   }
 
   const known = front.modes.map((_, r) => r).filter((r) => front.order.some((i) => front.mac[i][r] !== null));

@@ -105,6 +105,8 @@ class _Run:
         optimal = self._optimal(programme, bests, evolved or self._points(target, bests)[0])
         arguments = (self.problem, programme, self._weighted()[-1].solution)
         (iterated,) = self._run([Task(("iterated-weights",), iterate_weights, arguments)])
+        if not all(x.closed for x in self.state.places):
+            self.state.search("rest", (Polish(),), (1 + POINTS) / 2)
         # At the budget, no search has started from some incumbents.
         rest = [x for x in self.state.places if not x.incumbent.evaluation.derivatives]
         begun = {x.incumbent.theta.tobytes(): x.incumbent for x in rest}

@@ -87,8 +87,9 @@ class Least(Lexicographic):
         if not self.ties(J, before):
             return 1 - self.level(J[i]) / self.level(before[i])
         gain = float(others @ (before - J)) / max(float(others @ before), EXACT)
-        # Beside an edge, a tie hides what the others cost: the order of models has to agree.
-        return gain if gain * float(self.order.value(before) - self.order.value(J)) > 0 else 0.0
+        # Beside an edge, a tie hides what the others cost: the end of the path has to agree.
+        end = self.programme(EXACT)
+        return gain if gain * (end.value(before) - end.value(J)) > 0 else 0.0
 
 
 @dataclass(frozen=True)

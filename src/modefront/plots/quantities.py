@@ -18,7 +18,7 @@ from modefront.front.point import front_points, position, preferred
 from modefront.plots import canvas, drawing
 from modefront.plots.modes import modes
 from modefront.predictions.base import RecordedPrediction, predictions_in
-from modefront.text import NAME
+from modefront.text import NAME, Shown
 
 FAR = 2.5
 """Error over the greatest of the Pareto-optimal models from which a model is beyond the axes."""
@@ -413,8 +413,8 @@ def _method(
     return method
 
 
-@dataclass(frozen=True)
-class Plots:
+@dataclass(frozen=True, repr=False)
+class Plots(Shown):
     """Pictures of results; each method returns a figure of matplotlib, with ``savefig``.
 
     All raise InputError without matplotlib, and where the results do not hold what is drawn.

@@ -183,10 +183,12 @@ class Cluster:
             raise wrong("--scheduler", expected, "no package 'distributed'") from None
         self.lost: Errors = (distributed.KilledWorker,)
         self.gone: Errors = (CancelledError, OSError, distributed.client.ClosedClientError)
+        logging.getLogger("distributed").setLevel(logging.CRITICAL)  # errors say what it logs
+        self._client = client = object.__new__(distributed.Client)
         try:
-            logging.getLogger("distributed").setLevel(logging.CRITICAL)  # errors say what it logs
-            self._client = distributed.Client(address, timeout=ANSWER, set_as_default=False)
-        except ValueError as error:
+            client.__init__(address, timeout=ANSWER, set_as_default=False)
+        except (TypeError, ValueError) as error:
+            client.status = "closed"  # it was never open, and would wait for itself in the end
             expected = "an address like tcp://HOST:PORT"
             raise wrong("--scheduler", expected, f"{address}: {error}") from None
         except OSError:
