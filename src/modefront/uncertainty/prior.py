@@ -29,6 +29,9 @@ PULL = 1e-3  # weight of the distance from the nominal model: a normal prior of 
 USUAL = {"frequency": 0.005, "shape": 0.03}
 """Standard deviations of errors that are assumed, and said, where no one else says any."""
 
+FREQUENCY = number("a share above 0 and below 0.2, such as 0.005 for 0.5 %", above=0, below=0.2)
+SHAPE = number("a share above 0 and below 1, such as 0.03 for 3 %", above=0, below=1)
+
 NINETY = 1.6449  # half the 90 % interval of a normal distribution, over its standard deviation
 
 FARTHEST = 7.0  # distance from the median of a prior, in standard deviations, at most
@@ -48,8 +51,8 @@ class NoisePrior(Checked):
     weight : how many data this expectation is worth; 0 for none, and optimal weights
     """
 
-    frequency: Annotated[float, number("a number above 0", above=0)] | None = None
-    shape: Annotated[float, number("a number above 0", above=0)] | None = None
+    frequency: Annotated[float, FREQUENCY] | None = None
+    shape: Annotated[float, SHAPE] | None = None
     weight: Annotated[float, number("a number of 0 or more", least=0)] = 4.0
 
     def of(self, problem: UpdatingProblem, source: Source | None) -> "NoiseModel | None":
