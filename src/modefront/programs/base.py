@@ -10,6 +10,7 @@ import re
 import warnings
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import astuple, dataclass
+from itertools import islice
 from pathlib import Path
 from typing import Any, Literal, TypeAlias
 
@@ -151,6 +152,13 @@ class Listed:
     counted: bool = True
     mesh: ProgramMesh | None = None  # mesh, notes: as in `Job`
     notes: Sequence[str] = ()
+
+
+def turned(nodes: Iterable[str]) -> list[str]:
+    """Return the note of nodes, or sets of them, whose directions are not those of the whole."""
+    some = ", ".join(islice(nodes, 6))
+    of = "directions of sensors, pictures and a base that moves are those of the nodes' own systems"
+    return [f"{of} at node {some}"] * bool(some)
 
 
 def entries_of(row: Ints, column: Ints, value: Floats, size: int) -> scipy.sparse.coo_array:
