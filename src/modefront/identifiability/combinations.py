@@ -17,7 +17,7 @@ import scipy.linalg
 from modefront._typing import Bools, Floats
 from modefront.identifiability.scale import Scale, scale_at
 from modefront.optim.lexicographic import TIE
-from modefront.optim.problem import Evaluation
+from modefront.optim.problem import Evaluation, Residual
 from modefront.options import Checked, number, whole
 from modefront.residuals.problem import UpdatingProblem
 
@@ -102,9 +102,25 @@ def combinations(
         residuals = problem.residuals(theta)
     every = np.ones(len(residuals)) if weights is None else weights
     w = every if group is None else np.eye(len(residuals))[group]
-    G = np.concatenate([np.sqrt(w[i]) * residuals[i].dr for i in np.flatnonzero(w).tolist()])
-    least = ROUNDING * float(np.sqrt(w @ sizes(problem) ** 2))
-    return decompose(G * (scale or scale_at(problem, theta)).unit, least)
+    changes = changes_of(problem, residuals, (scale or scale_at(problem, theta)).unit)
+    G = np.concatenate([np.sqrt(w[i]) * changes[i] for i in np.flatnonzero(w).tolist()])
+    return decompose(G, ROUNDING * float(np.sqrt(w @ sizes(problem) ** 2)))
+
+
+def changes_of(
+    problem: UpdatingProblem, residuals: Sequence[Residual], unit: Floats
+) -> list[Floats]:
+    """Return the changes (rows, p) of the residuals of each group by a unit of each parameter.
+
+    No combination changes residuals by more than the measured values: where it does to first order,
+    as it does shapes of close modes, it does so for small steps alone.
+    """
+    out = [residual.dr * unit for residual in residuals]
+    for i, most in enumerate(sizes(problem)):
+        if np.linalg.norm(out[i], 2) > most:
+            U, sigma, Vt = np.linalg.svd(out[i], full_matrices=False)
+            out[i] = U * np.minimum(sigma, most) @ Vt
+    return out
 
 
 def cosines(gram: Floats) -> Floats:
@@ -301,9 +317,9 @@ def determination(problem: UpdatingProblem, evaluation: Evaluation) -> Determina
     groups += [(ALL, None)] * (len(groups) > 1)
     of = [(name, combinations(problem, evaluation, i, weights, scale)) for name, i in groups]
     unit = np.where(np.isin(np.arange(scale.unit.size), idle), 0.0, scale.unit)
-    H = np.tensordot(weights, evaluation.gauss_newton, axes=1)
-    effects = H / 2 * np.outer(unit, unit)
-    return Determination(scale, idle, of, effects)
+    changes = changes_of(problem, evaluation.residuals, unit)
+    effects = sum(w * G.T @ G for w, G in zip(weights, changes, strict=True))
+    return Determination(scale, idle, of, np.asarray(effects))
 
 
 @dataclass(frozen=True)
@@ -351,8 +367,8 @@ def superfluous(problem: UpdatingProblem, nominal: Evaluation) -> tuple[str, ...
     scale, names = scale_at(problem, problem.start), problem.model.parameters
     idle = without_effect(problem, nominal, scale)
     roots = np.sqrt(optimal_weights(problem.properties, nominal.J))
-    residuals = zip(roots, nominal.residuals, strict=True)
-    G = np.concatenate([w * residual.dr for w, residual in residuals]) * scale.unit
+    changes = zip(roots, changes_of(problem, nominal.residuals, scale.unit), strict=True)
+    G = np.concatenate([w * each for w, each in changes])
     kept = np.setdiff1d(np.flatnonzero(G.any(axis=0)), idle)
     chosen = kept[scipy.linalg.qr(G[:, kept], mode="r", pivoting=True)[1]].tolist()
     out: list[str] = []
