@@ -110,8 +110,9 @@ class IdentifiedTest(Shown):
                 modes.append({})
                 for number, k in ((r, k) for r, k in enumerate(of_set, 1) if k >= 0):
                     shape = np.zeros(len(sensors), complex)
-                    shape[at] = each.modes[k].shape.complex_shape
-                    modes[-1][number] = each.modes[k].pole, shape
+                    mode = each.modes[k]
+                    shape[at] = np.where(np.isnan(mode.shape_std), 0, mode.shape.complex_shape)
+                    modes[-1][number] = mode.pole, shape
             write_uff55(path, self.names, modes, sensors, self.data.pairs)
         else:
             sensors = self.data.sensors
