@@ -276,7 +276,7 @@ def test_a_deck_of_which_some_numbers_are_not_known_is_not_written(tmp_path: Pat
     assert (len(known), unknown) == (1, [])
     write_changes(tmp_path / CHANGES, known)
     (tmp_path / "out").mkdir()
-    assert "numbers that r multiplies are not known" in write_deck(
+    assert "which numbers belong to r is not known" in write_deck(
         tmp_path, {"E": 1.5, "r": 1.1}, tmp_path / "out"
     )
     assert not list((tmp_path / "out").iterdir())
