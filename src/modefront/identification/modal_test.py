@@ -259,6 +259,7 @@ def _ends(path: Path, test: ModalTest, band: tuple[float, float] | None) -> tupl
         if (high - low) * setup.duration < ambient.LEAST_LINES:
             expected = f"a band of {ambient.LEAST_LINES} lines of set {setup.name!r} at least"
             reach = f"{low:g} to {high:g} Hz of {setup.duration:g} s at {setup.rate:g} per s"
+            reach += ": is the time in s?" * (high < low)
             raise wrong(path, expected, reach, "band")
         ends += low, high
     for data_set in test.sets:
