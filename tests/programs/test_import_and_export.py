@@ -441,6 +441,10 @@ def test_the_example_leads_to_the_true_parameters_within_its_errors(tmp_path: Pa
     study = load(tmp_path / "study.toml")
     assert check(study).warnings == ()
     assert estimate(study.problem) == pytest.approx([0.85, 1.15, 1.4, 0.8], rel=0.02)
+    text = study.file.read_text(encoding="utf-8").replace("n3z = { node = 3,", "n3z = { node = 13,")
+    study.file.write_text(text, encoding="utf-8")
+    (warning,) = check(study.file).warnings
+    assert warning.startswith("sensor n3z fits the data at node 3 and not at node 13, where the")
 
 
 @needs_ccx
