@@ -102,25 +102,26 @@ def combinations(
         residuals = problem.residuals(theta)
     every = np.ones(len(residuals)) if weights is None else weights
     w = every if group is None else np.eye(len(residuals))[group]
-    changes = changes_of(problem, residuals, (scale or scale_at(problem, theta)).unit)
-    G = np.concatenate([np.sqrt(w[i]) * changes[i] for i in np.flatnonzero(w).tolist()])
+    G = jacobian(problem, residuals, w, (scale or scale_at(problem, theta)).unit)
     return decompose(G, ROUNDING * float(np.sqrt(w @ sizes(problem) ** 2)))
 
 
-def changes_of(
-    problem: UpdatingProblem, residuals: Sequence[Residual], unit: Floats
-) -> list[Floats]:
-    """Return the changes (rows, p) of the residuals of each group by a unit of each parameter.
+def jacobian(
+    problem: UpdatingProblem, residuals: Sequence[Residual], weights: Floats, unit: Floats
+) -> Floats:
+    """Return the changes (rows, p) of the weighted residuals by a unit of each parameter.
 
-    No combination changes residuals by more than the measured values: where it does to first order,
+    No combination changes a group by more than its measured values: where it does to first order,
     as it does shapes of close modes, it does so for small steps alone.
     """
-    out = [residual.dr * unit for residual in residuals]
-    for i, most in enumerate(sizes(problem)):
-        if np.linalg.norm(out[i], 2) > most:
-            U, sigma, Vt = np.linalg.svd(out[i], full_matrices=False)
-            out[i] = U * np.minimum(sigma, most) @ Vt
-    return out
+    out = []
+    for w, residual, most in zip(weights, residuals, sizes(problem), strict=True):
+        G = residual.dr * unit
+        if np.linalg.norm(G, 2) > most:
+            U, sigma, Vt = np.linalg.svd(G, full_matrices=False)
+            G = U * np.minimum(sigma, most) @ Vt
+        out += [np.sqrt(w) * G] * int(w > 0)
+    return np.concatenate(out)
 
 
 def cosines(gram: Floats) -> Floats:
@@ -317,9 +318,8 @@ def determination(problem: UpdatingProblem, evaluation: Evaluation) -> Determina
     groups += [(ALL, None)] * (len(groups) > 1)
     of = [(name, combinations(problem, evaluation, i, weights, scale)) for name, i in groups]
     unit = np.where(np.isin(np.arange(scale.unit.size), idle), 0.0, scale.unit)
-    changes = changes_of(problem, evaluation.residuals, unit)
-    effects = sum(w * G.T @ G for w, G in zip(weights, changes, strict=True))
-    return Determination(scale, idle, of, np.asarray(effects))
+    G = jacobian(problem, evaluation.residuals, weights, unit)
+    return Determination(scale, idle, of, G.T @ G)
 
 
 @dataclass(frozen=True)
@@ -366,9 +366,8 @@ def superfluous(problem: UpdatingProblem, nominal: Evaluation) -> tuple[str, ...
     """
     scale, names = scale_at(problem, problem.start), problem.model.parameters
     idle = without_effect(problem, nominal, scale)
-    roots = np.sqrt(optimal_weights(problem.properties, nominal.J))
-    changes = zip(roots, changes_of(problem, nominal.residuals, scale.unit), strict=True)
-    G = np.concatenate([w * each for w, each in changes])
+    weights = optimal_weights(problem.properties, nominal.J)
+    G = jacobian(problem, nominal.residuals, weights, scale.unit)
     kept = np.setdiff1d(np.flatnonzero(G.any(axis=0)), idle)
     chosen = kept[scipy.linalg.qr(G[:, kept], mode="r", pivoting=True)[1]].tolist()
     out: list[str] = []

@@ -10,7 +10,6 @@ import re
 import warnings
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import astuple, dataclass
-from itertools import islice
 from pathlib import Path
 from typing import Any, Literal, TypeAlias
 
@@ -154,9 +153,9 @@ class Listed:
     notes: Sequence[str] = ()
 
 
-def turned(nodes: Iterable[str]) -> list[str]:
+def turned(nodes: Sequence[object]) -> list[str]:
     """Return the note of nodes, or sets of them, whose directions are not those of the whole."""
-    some = ", ".join(islice(nodes, 6))
+    some = ", ".join(map(str, nodes[:6]))
     of = "directions of sensors, pictures and a base that moves are those of the nodes' own systems"
     return [f"{of} at node {some}"] * bool(some)
 

@@ -41,9 +41,7 @@ class Deck:
     others: set[int] = field(default_factory=set)  # nodes of all other elements
     bodies: list[str] = field(default_factory=list)  # nodes of rigid bodies, or their sets
     guides: list[str] = field(default_factory=list)  # reference nodes of bodies and couplings
-    turned: list[str] = field(
-        default_factory=list
-    )  # nodes with systems of their own, or their sets
+    turned: list[str] = field(default_factory=list)  # sets of nodes with systems of their own
     parts: bool = False  # whether nodes are numbered in parts: numbers of matrices are others
 
     @cached_property

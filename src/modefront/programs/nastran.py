@@ -90,7 +90,7 @@ def _deck(path: Path, options: base.JobOptions, notes: list[str]) -> "Bulk | Non
         bulk = read_bulk(deck)
     except OSError as error:
         raise wrong(deck, "a deck that can be read", reason(error)) from None
-    notes += base.turned(map(str, sorted(bulk.turned)))
+    notes += base.turned(sorted(bulk.turned))
     return bulk
 
 
