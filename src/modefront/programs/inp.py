@@ -27,6 +27,7 @@ _TYPES = (  # beginnings of the names of element types, and the cells that they 
 )
 
 
+# 11 fields: one for each kind of entry of a deck.
 @dataclass
 class Deck:
     """Nodes, elements and constraints of a deck, as they are collected while it is read."""
