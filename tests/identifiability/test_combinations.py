@@ -58,7 +58,7 @@ def chain() -> mf.UpdatingProblem:
 def test_shapes_leave_the_scale_of_all_stiffnesses() -> None:
     problem = chain()
     theta = np.array([1.3, 0.7, 2.0])
-    result = combinations(problem, theta, 1)
+    result = combinations(problem, problem.evaluate(theta), 1)
     assert [combination.share > NONE for combination in result] == [True, True, False]
     assert result[-1].direction == pytest.approx(np.ones(3) / np.sqrt(3), abs=1e-9)
     text = said(problem.groups[1], result, NAMES)
@@ -73,7 +73,7 @@ def test_an_evaluation_tells_the_same_without_another_one() -> None:
     with counted() as costs:
         result = combinations(problem, evaluation, weights=weights)
     assert costs.eigenproblems == 0
-    expected = combinations(problem, evaluation.theta, weights=weights)
+    expected = combinations(problem, problem.evaluate(evaluation.theta), weights=weights)
     for first, other in zip(result, expected, strict=True):
         assert first.sensitivity == pytest.approx(other.sensitivity, rel=1e-7)
         assert abs(first.direction @ other.direction) == pytest.approx(1, abs=1e-7)
@@ -84,8 +84,8 @@ def test_an_evaluation_tells_the_same_without_another_one() -> None:
 def test_weights_of_groups_move_what_is_determined_best() -> None:
     problem = chain()
     theta = problem.start
-    heavy = combinations(problem, theta, weights=np.array([1e12, 1.0]))
-    alone = combinations(problem, theta, 0)
+    heavy = combinations(problem, problem.evaluate(theta), weights=np.array([1e12, 1.0]))
+    alone = combinations(problem, problem.evaluate(theta), 0)
     assert abs(heavy[0].direction @ alone[0].direction) == pytest.approx(1, abs=1e-9)
 
 

@@ -17,7 +17,7 @@ import scipy.linalg
 from modefront._typing import Bools, Floats
 from modefront.identifiability.scale import Scale, scale_at
 from modefront.optim.lexicographic import TIE
-from modefront.optim.problem import Evaluation, Residual
+from modefront.optim.problem import Evaluation
 from modefront.options import Checked, number, whole
 from modefront.residuals.problem import UpdatingProblem
 
@@ -70,7 +70,7 @@ class Combination:
 
 def combinations(
     problem: UpdatingProblem,
-    theta: Floats | Evaluation,
+    evaluation: Evaluation,
     group: int | None = None,
     weights: Floats | None = None,
     scale: Scale | None = None,
@@ -81,33 +81,23 @@ def combinations(
     ----------
     problem
         The updating problem.
-    theta
-        Parameters (p,) of the model at which the residuals are linearised, or its evaluation with
-        derivatives.
+    evaluation
+        The model at which the residuals are linearised, with derivatives.
     group
         Number of the group whose residuals determine them, from 0; None for all groups together.
     weights
         Weights (groups,) of all groups together; 1 unless given.
     scale
-        Units of the parameters at ``theta``; computed unless given.
-
-    Raises
-    ------
-    ModelError
-        If the model has no modes at ``theta``.
+        Units of the parameters there; computed unless given.
     """
-    if isinstance(theta, Evaluation):
-        residuals, theta = theta.residuals, theta.theta
-    else:
-        residuals = problem.residuals(theta)
-    every = np.ones(len(residuals)) if weights is None else weights
-    w = every if group is None else np.eye(len(residuals))[group]
-    G = jacobian(problem, residuals, w, (scale or scale_at(problem, theta)).unit)
+    every = np.ones(len(problem.groups)) if weights is None else weights
+    w = every if group is None else np.eye(len(problem.groups))[group]
+    G = jacobian(problem, evaluation, w, (scale or scale_at(problem, evaluation.theta)).unit)
     return decompose(G, ROUNDING * float(np.sqrt(w @ sizes(problem) ** 2)))
 
 
 def jacobian(
-    problem: UpdatingProblem, residuals: Sequence[Residual], weights: Floats, unit: Floats
+    problem: UpdatingProblem, evaluation: Evaluation, weights: Floats, unit: Floats
 ) -> Floats:
     """Return the changes (rows, p) of the weighted residuals by a unit of each parameter.
 
@@ -115,7 +105,7 @@ def jacobian(
     as it does shapes of close modes, it does so for small steps alone.
     """
     out = []
-    for w, residual, most in zip(weights, residuals, sizes(problem), strict=True):
+    for w, residual, most in zip(weights, evaluation.residuals, sizes(problem), strict=True):
         G = residual.dr * unit
         if np.linalg.norm(G, 2) > most:
             U, sigma, Vt = np.linalg.svd(G, full_matrices=False)
@@ -318,7 +308,7 @@ def determination(problem: UpdatingProblem, evaluation: Evaluation) -> Determina
     groups += [(ALL, None)] * (len(groups) > 1)
     of = [(name, combinations(problem, evaluation, i, weights, scale)) for name, i in groups]
     unit = np.where(np.isin(np.arange(scale.unit.size), idle), 0.0, scale.unit)
-    G = jacobian(problem, evaluation.residuals, weights, unit)
+    G = jacobian(problem, evaluation, weights, unit)
     return Determination(scale, idle, of, G.T @ G)
 
 
@@ -367,7 +357,7 @@ def superfluous(problem: UpdatingProblem, nominal: Evaluation) -> tuple[str, ...
     scale, names = scale_at(problem, problem.start), problem.model.parameters
     idle = without_effect(problem, nominal, scale)
     weights = optimal_weights(problem.properties, nominal.J)
-    G = jacobian(problem, nominal.residuals, weights, scale.unit)
+    G = jacobian(problem, nominal, weights, scale.unit)
     kept = np.setdiff1d(np.flatnonzero(G.any(axis=0)), idle)
     chosen = kept[scipy.linalg.qr(G[:, kept], mode="r", pivoting=True)[1]].tolist()
     out: list[str] = []
