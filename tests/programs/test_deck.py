@@ -190,6 +190,10 @@ def test_terms_of_a_thickness_that_are_zero_are_left_out(tmp_path: Path) -> None
     imported = mf.import_deck(deck, {"t": "section:DECK"})
     assert [*imported.terms.ranks] == ["t", "1/t"]
     assert max(imported.errors) < 1e-10
+    deck.write_text(PLATE.replace("\n0.02\n", "\n0.002\n"))
+    for what, is_lost in (("section:DECK", True), ("material:STEEL", False)):
+        notes = mf.import_deck(deck, {"x": what}).notes
+        assert any("shells so thin lose digits" in note for note in notes) is is_lost
 
 
 @needs_ccx
