@@ -324,8 +324,8 @@ def test_a_model_is_exported(small: Path, monkeypatch: pytest.MonkeyPatch) -> No
     assert "a factor of what was changed" in deck, "there is no deck with another E"
     _check_shapes(folder, K, M)
     assert "warning" not in (folder / "parameters.json").read_text()
-    data, says = read_dataset(small / "results"), "Do not use any of these models: …"
-    refused = data.assign_attrs({"reference": "", "verdict": f"{says}\nmore"})
+    found, says = read_dataset(small / "results"), "Do not use any of these models: …"
+    refused = found.assign_attrs({"reference": "", "verdict": f"{says}\nmore"})
     monkeypatch.setattr("modefront.study.export.read_dataset", lambda _: refused)
     result = modefront("export", small / "results", "--point", "equal-weights", "-o", small / "a")
     assert says in result.output.splitlines()
