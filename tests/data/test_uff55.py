@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from modefront.errors import InputError
 from modefront.study.check import check
 from modefront.study.examples import write_example
 from modefront.study.file import load
+from modefront.study.measured import _by_coordinates
 
 pyuff = pytest.importorskip("pyuff")
 
@@ -230,6 +232,15 @@ def test_sensors_of_a_mesh_are_found_by_coordinates_and_names(tmp_path: Path) ->
     assert modes.place("6RZ") is not None
     assert modes.place("floor1") is None
     assert modes.place("9X") is None
+    sensor: dict[str, Any] = {"sensor_nodes": [2], "sensor_directions": np.eye(3)}
+    mesh: Any = SimpleNamespace(nodes=np.array([[0.0, 0, 0], [2, 0, 0], [1, 0, 0]]), **sensor)
+    place = _by_coordinates(modes, mesh, 0)
+    assert place is not None
+    assert place[0] == 1
+    for scale in (1e-3, 1e3):  # all nodes of one are near one of the other
+        mesh.nodes = scale * mesh.nodes
+        assert _by_coordinates(modes, mesh, 0) is None
+        mesh.nodes = mesh.nodes / scale
 
 
 def lines_of(*, count: int = 3) -> list[str]:

@@ -13,11 +13,13 @@ import modefront as mf
 from modefront.findings.knowledge import direction_in_words, summaries
 from modefront.identifiability.combinations import (
     NONE,
+    WEAK,
     Combination,
     Determination,
     combinations,
     cosines,
     decompose,
+    determination,
     index,
     optimal_weights,
     pairs,
@@ -56,7 +58,7 @@ def chain() -> mf.UpdatingProblem:
 def test_shapes_leave_the_scale_of_all_stiffnesses() -> None:
     problem = chain()
     theta = np.array([1.3, 0.7, 2.0])
-    result = combinations(problem, theta, 1)
+    result = combinations(problem, problem.evaluate(theta), 1)
     assert [combination.share > NONE for combination in result] == [True, True, False]
     assert result[-1].direction == pytest.approx(np.ones(3) / np.sqrt(3), abs=1e-9)
     text = said(problem.groups[1], result, NAMES)
@@ -71,7 +73,7 @@ def test_an_evaluation_tells_the_same_without_another_one() -> None:
     with counted() as costs:
         result = combinations(problem, evaluation, weights=weights)
     assert costs.eigenproblems == 0
-    expected = combinations(problem, evaluation.theta, weights=weights)
+    expected = combinations(problem, problem.evaluate(evaluation.theta), weights=weights)
     for first, other in zip(result, expected, strict=True):
         assert first.sensitivity == pytest.approx(other.sensitivity, rel=1e-7)
         assert abs(first.direction @ other.direction) == pytest.approx(1, abs=1e-7)
@@ -82,9 +84,26 @@ def test_an_evaluation_tells_the_same_without_another_one() -> None:
 def test_weights_of_groups_move_what_is_determined_best() -> None:
     problem = chain()
     theta = problem.start
-    heavy = combinations(problem, theta, weights=np.array([1e12, 1.0]))
-    alone = combinations(problem, theta, 0)
+    heavy = combinations(problem, problem.evaluate(theta), weights=np.array([1e12, 1.0]))
+    alone = combinations(problem, problem.evaluate(theta), 0)
     assert abs(heavy[0].direction @ alone[0].direction) == pytest.approx(1, abs=1e-9)
+
+
+def test_nominal_modes_that_are_close_leave_other_combinations_determined() -> None:
+    names, D = ("left", "right"), np.diag([1.0, 0.0])
+    weak = np.array([[1e-3, -1e-3], [-1e-3, 1.1e-3]])  # between two equal oscillators
+    K = {"base": weak, "left": D, "right": np.eye(2) - D}
+    model = mf.matrices(names, K, {"base": np.eye(2)}, {"a": 0, "b": 1})
+    true = model.modes(np.array([0.9, 1.2]), 2)
+    data = mf.modal_data(true.frequency, true.phi.T, model.sensors)
+    groups = [mf.Group("frequencies", frequency="all"), mf.Group("shapes", shape="all")]
+    bounds, nominal = dict.fromkeys(names, (0.5, 2.0)), dict.fromkeys(names, 1.0)
+    problem = mf.updating_problem(model, data, groups, bounds, nominal)
+    assert max(x.sensitivity for x in decompose(problem.residuals(problem.start)[1].dr)) > 100
+    found = determination(problem, problem.evaluate(problem.start))
+    assert all(x.share > WEAK for x in found.combinations[-1][1])
+    assert pairs(found.effects) == []
+    assert sensitivities(problem).superfluous == ()
 
 
 def test_a_group_that_is_fitted_exactly_has_a_bounded_weight() -> None:

@@ -159,7 +159,7 @@ def test_a_weak_member_beside_a_strong_one_is_measured_by_its_range() -> None:
     weak = np.diag([0.0, 0.0, 1e-4])
     for form in FORMS:
         problem = problem_of(form, 3, springs=[*strong, weak])
-        result = combinations(problem, problem.start, weights=np.ones(2))
+        result = combinations(problem, problem.evaluate(problem.start), weights=np.ones(2))
         assert 1e-5 < result[-1].share < 1e-2, "hardly determined"
         assert abs(result[-1].direction[3]) > 0.9
 
@@ -173,7 +173,7 @@ def test_shapes_leave_the_scale_of_the_stiffness_in_every_form(
     problem = problem_of(form, upper=upper)
     theta = in_form(form, k)
     scale = scale_at(problem, theta)
-    result = combinations(problem, theta, 1, scale=scale)
+    result = combinations(problem, problem.evaluate(theta), 1, scale=scale)
     assert [combination.share > 1e-3 for combination in result] == [True, True, True, False]
     jacobian = by_differences(problem, theta, 1)
     sigma = np.linalg.svd(jacobian, compute_uv=False)
@@ -208,7 +208,7 @@ def test_two_springs_in_series_are_said_as_a_pair(form: str) -> None:
     theta = in_form(form, np.array([2.0, 0.8, 1.0, 1.1]))
     scale = scale_at(problem, theta)
     for group in (0, 1, None):
-        result = combinations(problem, theta, group, scale=scale)
+        result = combinations(problem, problem.evaluate(theta), group, scale=scale)
         message = free_in_words(result, problem.model.parameters, scale, ())
         assert "k1 and k2 cannot be told apart" in message
     for k1 in (1.6, 2.5):
@@ -226,7 +226,7 @@ def test_null_directions_of_few_data_hold_in_both_directions(form: str) -> None:
     problem = problem_of(form, n, sensors=range(1, n, 2), modes=4, lower=0.5, upper=2.0)
     theta = in_form(form, np.random.default_rng(2).uniform(0.8, 1.3, n))
     scale = scale_at(problem, theta)
-    result = combinations(problem, theta, 0, scale=scale)
+    result = combinations(problem, problem.evaluate(theta), 0, scale=scale)
     free = np.array([combination.direction for combination in result if combination.share <= 1e-7])
     assert len(free) == 8
     sigma = np.linalg.svd(by_differences(problem, theta, 0), compute_uv=False)
@@ -317,7 +317,7 @@ def test_rounding_determines_nothing() -> None:
     problem = problem_of("k", 3, springs=springs)
     evaluation = problem.evaluate(problem.start)
     for result in (
-        combinations(problem, problem.start, 1),
+        combinations(problem, problem.evaluate(problem.start), 1),
         combinations(problem, evaluation, 1),
     ):
         assert [combination.share for combination in result] == [0.0]
@@ -362,6 +362,6 @@ def test_without_matrices_changes_are_over_the_range() -> None:
     scale = scale_at(opaque, opaque.start)
     assert scale.unit == pytest.approx(problem.upper - problem.lower)
     assert scale.scalings == {}
-    result = combinations(opaque, opaque.start, 1)
+    result = combinations(opaque, opaque.evaluate(opaque.start), 1)
     text = free_in_words(result, problem.model.parameters, scale, ())
     assert text == ["k1, k2, k3 and k4 cannot be told apart"]

@@ -1,6 +1,7 @@
 """Simulated tests: all modes, no others, and intervals that hold the truth."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -16,6 +17,7 @@ from simulation import (
 from modefront._typing import Complexes, Floats
 from modefront.data.modal_test import ModalTest, Records
 from modefront.data.responses import Channel, assemble, frequency_responses
+from modefront.data.uff import read_uff55
 from modefront.identification import statistics
 from modefront.identification.methods.hammer import identify
 from modefront.identification.modal_model import maximise
@@ -124,7 +126,7 @@ def test_a_dead_channel_and_gaps_are_left_out() -> None:
 
 @pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize("size", [0.0, 0.002])
-def test_a_channel_of_zeros_or_noise_is_left_empty_and_named(size: float) -> None:
+def test_a_channel_of_zeros_or_noise_is_left_empty_and_named(size: float, tmp_path: Path) -> None:
     phi = three_story_shapes()
     H = accelerance(F, THREE_STORY, THREE_STORY_DAMPING, phi, [1, 2])
     rng = np.random.default_rng(2)
@@ -141,6 +143,8 @@ def test_a_channel_of_zeros_or_noise_is_left_empty_and_named(size: float) -> Non
     done = IdentifiedTest(test, (result,), combine(["1"], [result]), ())
     assert np.isnan(done.data.shape[0, :, 0]).all()
     assert np.isfinite(done.data.shape[0, :, 1:]).all()
+    done.write(tmp_path / "modes.uff")
+    assert len(read_uff55(tmp_path / "modes.uff").measured) == 2, "0 is not measured"
     expected = "1: nothing but noise at any mode" if size else "only zeros; the channel is left out"
     assert any(expected in text for text in done.warnings)
     for minutes in (30, 40):

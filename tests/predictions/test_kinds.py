@@ -114,7 +114,7 @@ def test_python_and_the_study_file_make_the_same_predictions(tmp_path: Path) -> 
             quantity="accelerance",
         ),
         mf.PeakResponse("ridden", "high", base="x", damping=0.02, quantity="absolute accelerance"),
-        mf.PeakResponse("between", "low", force="low", band=(0.1, 0.2), modes=2),
+        mf.PeakResponse("overdamped", "low", force="low", band=(0.1, 20), modes=2, damping=0.8),
         mf.Passage(
             "drifts",
             {"lower": "low", "upper": drift},

@@ -190,6 +190,10 @@ def test_terms_of_a_thickness_that_are_zero_are_left_out(tmp_path: Path) -> None
     imported = mf.import_deck(deck, {"t": "section:DECK"})
     assert [*imported.terms.ranks] == ["t", "1/t"]
     assert max(imported.errors) < 1e-10
+    deck.write_text(PLATE.replace("\n0.02\n", "\n0.002\n"))
+    for what, is_lost in (("section:DECK", True), ("material:STEEL", False)):
+        notes = mf.import_deck(deck, {"x": what}).notes
+        assert any("shells so thin lose digits" in note for note in notes) is is_lost
 
 
 @needs_ccx
@@ -276,7 +280,7 @@ def test_a_deck_of_which_some_numbers_are_not_known_is_not_written(tmp_path: Pat
     assert (len(known), unknown) == (1, [])
     write_changes(tmp_path / CHANGES, known)
     (tmp_path / "out").mkdir()
-    assert "numbers that r multiplies are not known" in write_deck(
+    assert "which numbers belong to r is not known" in write_deck(
         tmp_path, {"E": 1.5, "r": 1.1}, tmp_path / "out"
     )
     assert not list((tmp_path / "out").iterdir())

@@ -26,6 +26,7 @@ from modefront.models.matrices import MatrixModel
 from modefront.programs import PROGRAMS
 from modefront.programs.base import JobOptions, read_job, read_mesh
 from modefront.residuals.problem import UpdatingProblem
+from modefront.results.files import read_dataset
 from modefront.study.check import check
 from modefront.study.examples import write_example
 from modefront.study.export import node_motion
@@ -296,7 +297,7 @@ def test_nothing_is_overwritten(small: Path) -> None:
     assert (small / "study.toml").read_bytes() == before
 
 
-def test_a_model_is_exported(small: Path) -> None:
+def test_a_model_is_exported(small: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     study = small / "study.toml"
     text = study.read_text() + "\n[pareto]\npoints = 3\n[identifiability]\nmodels = 0\n"
     text += "[search]\ndoubt = 0.5\n[noise]\nweight = 0\n"
@@ -322,6 +323,14 @@ def test_a_model_is_exported(small: Path) -> None:
     assert f"set k {300 * values['k']:.9g}" in deck
     assert "a factor of what was changed" in deck, "there is no deck with another E"
     _check_shapes(folder, K, M)
+    assert "warning" not in (folder / "parameters.json").read_text()
+    found, says = read_dataset(small / "results"), "Do not use any of these models: …"
+    refused = found.assign_attrs({"reference": "", "verdict": f"{says}\nmore"})
+    monkeypatch.setattr("modefront.study.export.read_dataset", lambda _: refused)
+    result = modefront("export", small / "results", "--point", "equal-weights", "-o", small / "a")
+    assert says in result.output.splitlines()
+    assert json.loads((small / "a" / "parameters.json").read_text())["warning"] == says
+    assert says in (small / "a" / "deck.txt").read_text()
 
 
 def test_the_study_of_results_is_found_wherever_it_lies(
@@ -432,6 +441,10 @@ def test_the_example_leads_to_the_true_parameters_within_its_errors(tmp_path: Pa
     study = load(tmp_path / "study.toml")
     assert check(study).warnings == ()
     assert estimate(study.problem) == pytest.approx([0.85, 1.15, 1.4, 0.8], rel=0.02)
+    text = study.file.read_text(encoding="utf-8").replace("n3z = { node = 3,", "n3z = { node = 13,")
+    study.file.write_text(text, encoding="utf-8")
+    (warning,) = check(study.file).warnings
+    assert warning.startswith("sensor n3z fits the data at node 3 and not at node 13, where the")
 
 
 @needs_ccx

@@ -323,9 +323,12 @@ def test_a_deck_of_abaqus_as_its_manual_has_it(tmp_path: Path) -> None:
     assert mesh.coordinates[:, 2].tolist() == [1e-3] * len(mesh.number)
     assert mesh.coordinates[:, 0].tolist() == mesh.number.tolist()
     spring = "*ELEMENT, TYPE=SPRINGA, ELSET=S\n1, Part-1-1.5, Part-2-1.9\n"
-    (tmp_path / "a.inp").write_text(f"*PART, NAME=P\n*NODE\n{nodes}*END PART\n{spring}")
+    turned = "*TRANSFORM, NSET=RING, TYPE=C\n0., 0., 0., 0., 0., 1.\n"
+    deck = f"*PART, NAME=P\n*NODE\n{nodes}*END PART\n{spring}{turned}"
+    (tmp_path / "a.inp").write_text(deck)
     job = read("abaqus", tmp_path / "a")
     assert job.mesh is None
+    assert any(note.endswith("the nodes' own systems at node RING") for note in job.notes)
     assert "the deck numbers nodes in parts: coordinates are left out" in job.notes
 
 
@@ -469,10 +472,14 @@ def test_a_constraint_of_nastran_joins_the_nodes_of_all_its_lines(tmp_path: Path
 )
 def test_decks_of_nastran_that_are_not_whole(tmp_path: Path, old: str, new: str, says: str) -> None:
     write_dmig(tmp_path / "a.pch", {"KAAX": K, "MAAX": M}, labels())
-    grids = "".join(f"GRID,{n},,{k}.,0.,1.\n" for k, n in enumerate((12, 3, 7, 40, 5)))
+    turned = {5: ",9"}  # its own system of displacements
+    places = enumerate((12, 3, 7, 40, 5))
+    grids = "".join(f"GRID,{n},,{k}.,0.,1.{turned.get(n, '')}\n" for k, n in places)
     deck = f"BEGIN BULK\n{grids}CTETRA,1,1,12,3,7,40\nENDDATA\n"
     (tmp_path / "a.bdf").write_text(deck)
-    assert read("nastran", tmp_path / "a.pch").mesh is not None
+    job = read("nastran", tmp_path / "a.pch")
+    assert job.mesh is not None
+    assert any(note.endswith("the nodes' own systems at node 5") for note in job.notes)
     (tmp_path / "a.bdf").write_text(deck.replace(old, new))
     with pytest.raises(InputError, match=says):
         read("nastran", tmp_path / "a.pch")

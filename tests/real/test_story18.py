@@ -49,7 +49,7 @@ def first_two(frame: mf.UpdatingProblem) -> mf.UpdatingProblem:
 
 
 def ranks(frame: mf.UpdatingProblem) -> list[int]:
-    result = [combinations(frame, frame.start, group) for group in (0, 1, None)]
+    result = [combinations(frame, frame.evaluate(frame.start), group) for group in (0, 1, None)]
     return [sum(row.share > NONE for row in rows) for rows in result]
 
 
@@ -57,7 +57,7 @@ def test_each_measured_number_determines_one_combination(frame: mf.UpdatingProbl
     """A frequency determines one combination, and a shape one a floor but for its scale."""
     assert ranks(frame) == [3, 3 * 5, 18]
     assert ranks(first_two(frame)) == [2, 2 * 5, 12]
-    scaled = combinations(frame, frame.start, 1)
+    scaled = combinations(frame, frame.evaluate(frame.start), 1)
     free = np.array([combination.direction for combination in scaled if combination.share <= NONE])
     together = np.ones(STORIES) / np.sqrt(STORIES)
     assert np.linalg.norm(free @ together) == pytest.approx(1, abs=1e-9)

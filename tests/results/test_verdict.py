@@ -126,7 +126,7 @@ def test_a_front_is_a_compromise_where_two_groups_change(change: list[float], sa
         "kind": (("point",), np.array(["most-probable", "front", "front"])),
         "group": (("group",), np.array(["a", "b", "c"][: len(change)])),
         "front_misfit": (("point", "group"), errors),
-        "likely_mode": (("mode",), np.ones(1)),
+        "mac_mode": (("mode",), np.ones(1)),
         "paired_mode": (("point", "mode"), np.ones((3, 1))),
     }
     (found,) = _front(ArrayDataset({name: Array(*x) for name, x in values.items()}))

@@ -89,6 +89,10 @@ FREE = [("[3000.0, 2000.0]", "[0.0, 2000.0]"), ('["", ""]', '["k1", ""]')]
     ("edits", "says"),
     [
         (APART, "('peak') response: expected responses that the load can move, found none"),
+        (
+            [("band = [0.5, 15.0]", "band = [0.1, 0.2]")],
+            "('peak') band: expected a band with a frequency of the nominal model, or a measured ",
+        ),
         (FREE, "('peak') static: expected false, as a model with rigid-body modes has no static"),
         (
             [*FREE, ("static = true", "static = false"), ("band = [0.5,", "band = [0.0,")],

@@ -100,9 +100,9 @@ def test_a_moving_base_is_the_force_of_inertia(results: xr.Dataset) -> None:
 
 
 @pytest.mark.slow(1)
-def test_a_band_without_a_peak_is_said_to_have_none(results: xr.Dataset) -> None:
-    assert np.isnan(results["frf_peak"].sel(frf="between: low")).all()
-    assert np.isnan(results["frf_peak_range"].sel(frf="between: low")).all()
+def test_a_response_without_a_peak_is_said_to_have_none(results: xr.Dataset) -> None:
+    assert np.isnan(results["frf_peak"].sel(frf="overdamped: low")).all()
+    assert np.isnan(results["frf_peak_range"].sel(frf="overdamped: low")).all()
 
 
 @pytest.mark.slow(1)
@@ -356,7 +356,7 @@ def test_show_prints_and_draws_predictions(
     ):
         assert text in words
     names = ["front", "parameters", "frequencies", "mac", "modes", "predictions"]
-    names += ["frf-pushed", "frf-shaken", "frf-as-if-shaken", "frf-ridden", "frf-between"]
+    names += ["frf-pushed", "frf-shaken", "frf-as-if-shaken", "frf-ridden", "frf-overdamped"]
     names += ["failure-drifts", "uncertainty", "minima"]
     paths = [tmp_path / "results" / "figures" / f"{name}.svg" for name in names]
     assert out.splitlines()[: len(names)] == [f"wrote {path}" for path in paths]

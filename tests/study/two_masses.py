@@ -82,11 +82,12 @@ damping = 0.02
 quantity = "absolute accelerance"
 
 [[predict.frf]]
-name = "between"
+name = "overdamped"
 force = "low"
 response = ["low"]
-band = [0.1, 0.2]
+band = [0.1, 20.0]
 modes = 2
+damping = 0.8
 """
 
 PASSAGE = """

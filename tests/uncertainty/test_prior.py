@@ -1,5 +1,7 @@
 """Errors with a prior: counts, scatter and the most probable model against closed forms."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import scipy.integrate
@@ -66,6 +68,9 @@ def test_standard_deviations_of_the_data_come_first_and_gaps_are_assumed() -> No
     usual = NoisePrior(frequency=0.005, shape=0.03).of(problem_of(), None)
     assert usual is not None
     assert usual.assumed == "", "the user has said what is usual"
+    alone = NoisePrior().of(replace(problem_of(), groups=(mf.Group("f", frequency="all"),)), None)
+    assert alone is not None
+    assert alone.assumed == "frequencies known to 0.5 %", "no group has shapes"
     without = NoisePrior().of(problem_of(frequency_std=std), None)
     assert without is not None
     assert without.problem.data.frequency_std[0] == pytest.approx(0.005 * FREQUENCY)
@@ -143,5 +148,6 @@ def test_what_nothing_determines_stays_nominal() -> None:
 
 def test_weight_zero_expects_nothing() -> None:
     assert NoisePrior(weight=0).of(problem_of(), None) is None
-    with pytest.raises(InputError, match="frequency"):
-        NoisePrior(frequency=0)
+    for frequency in (0, 0.5):  # as a per cent
+        with pytest.raises(InputError, match="such as 0"):
+            NoisePrior(frequency=frequency)

@@ -279,8 +279,9 @@ def _rivals(problem: UpdatingProblem, model: ReducedModel, front: Front) -> Iter
 
 
 def _paired(solution: Solution) -> Ints:
-    """Return the modes that are paired with measured ones, counted from 0."""
-    return solution.evaluation.quantities["paired_mode"].astype(int) - 1
+    """Return the modes that the rule of the problem pairs with measured ones, counted from 0."""
+    of = solution.evaluation.quantities
+    return of.get("mac_mode", of["paired_mode"]).astype(int) - 1
 
 
 def _key(solution: Solution) -> bytes:

@@ -387,6 +387,8 @@ def export(directory: Path, **given: Any) -> None:
         say(f"wrote {file}")
     for what in exported.missing:
         say(f"not written: {what}")
+    if exported.warning:
+        say(exported.warning)
     say_next("show", directory, "--points")
 
 

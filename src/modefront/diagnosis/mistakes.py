@@ -556,6 +556,8 @@ def wrong_place(old: Explanation) -> Iterator[Mistake]:
 def _place(geometry: Geometry, k: int) -> str:
     if len(geometry.axes) == 1:  # a chain, above the ground
         return f"degree of freedom {k - 1}"
+    if geometry.numbers is not None:
+        return f"node {geometry.numbers[k]}"
     return f"({', '.join(f'{x:.4g}' for x in geometry.nodes[k])})"
 
 

@@ -70,7 +70,7 @@ class Combination:
 
 def combinations(
     problem: UpdatingProblem,
-    theta: Floats | Evaluation,
+    evaluation: Evaluation,
     group: int | None = None,
     weights: Floats | None = None,
     scale: Scale | None = None,
@@ -81,30 +81,37 @@ def combinations(
     ----------
     problem
         The updating problem.
-    theta
-        Parameters (p,) of the model at which the residuals are linearised, or its evaluation with
-        derivatives.
+    evaluation
+        The model at which the residuals are linearised, with derivatives.
     group
         Number of the group whose residuals determine them, from 0; None for all groups together.
     weights
         Weights (groups,) of all groups together; 1 unless given.
     scale
-        Units of the parameters at ``theta``; computed unless given.
-
-    Raises
-    ------
-    ModelError
-        If the model has no modes at ``theta``.
+        Units of the parameters there; computed unless given.
     """
-    if isinstance(theta, Evaluation):
-        residuals, theta = theta.residuals, theta.theta
-    else:
-        residuals = problem.residuals(theta)
-    every = np.ones(len(residuals)) if weights is None else weights
-    w = every if group is None else np.eye(len(residuals))[group]
-    G = np.concatenate([np.sqrt(w[i]) * residuals[i].dr for i in np.flatnonzero(w).tolist()])
-    least = ROUNDING * float(np.sqrt(w @ sizes(problem) ** 2))
-    return decompose(G * (scale or scale_at(problem, theta)).unit, least)
+    every = np.ones(len(problem.groups)) if weights is None else weights
+    w = every if group is None else np.eye(len(problem.groups))[group]
+    G = jacobian(problem, evaluation, w, (scale or scale_at(problem, evaluation.theta)).unit)
+    return decompose(G, ROUNDING * float(np.sqrt(w @ sizes(problem) ** 2)))
+
+
+def jacobian(
+    problem: UpdatingProblem, evaluation: Evaluation, weights: Floats, unit: Floats
+) -> Floats:
+    """Return the changes (rows, p) of the weighted residuals by a unit of each parameter.
+
+    No combination changes a group by more than its measured values: where it does to first order,
+    as it does shapes of close modes, it does so for small steps alone.
+    """
+    out = []
+    for w, residual, most in zip(weights, evaluation.residuals, sizes(problem), strict=True):
+        G = residual.dr * unit
+        if np.linalg.norm(G, 2) > most:
+            U, sigma, Vt = np.linalg.svd(G, full_matrices=False)
+            G = U * np.minimum(sigma, most) @ Vt
+        out += [np.sqrt(w) * G] * int(w > 0)
+    return np.concatenate(out)
 
 
 def cosines(gram: Floats) -> Floats:
@@ -301,9 +308,8 @@ def determination(problem: UpdatingProblem, evaluation: Evaluation) -> Determina
     groups += [(ALL, None)] * (len(groups) > 1)
     of = [(name, combinations(problem, evaluation, i, weights, scale)) for name, i in groups]
     unit = np.where(np.isin(np.arange(scale.unit.size), idle), 0.0, scale.unit)
-    H = np.tensordot(weights, evaluation.gauss_newton, axes=1)
-    effects = H / 2 * np.outer(unit, unit)
-    return Determination(scale, idle, of, effects)
+    G = jacobian(problem, evaluation, weights, unit)
+    return Determination(scale, idle, of, G.T @ G)
 
 
 @dataclass(frozen=True)
@@ -350,9 +356,8 @@ def superfluous(problem: UpdatingProblem, nominal: Evaluation) -> tuple[str, ...
     """
     scale, names = scale_at(problem, problem.start), problem.model.parameters
     idle = without_effect(problem, nominal, scale)
-    roots = np.sqrt(optimal_weights(problem.properties, nominal.J))
-    residuals = zip(roots, nominal.residuals, strict=True)
-    G = np.concatenate([w * residual.dr for w, residual in residuals]) * scale.unit
+    weights = optimal_weights(problem.properties, nominal.J)
+    G = jacobian(problem, nominal, weights, scale.unit)
     kept = np.setdiff1d(np.flatnonzero(G.any(axis=0)), idle)
     chosen = kept[scipy.linalg.qr(G[:, kept], mode="r", pivoting=True)[1]].tolist()
     out: list[str] = []

@@ -110,8 +110,9 @@ class IdentifiedTest(Shown):
                 modes.append({})
                 for number, k in ((r, k) for r, k in enumerate(of_set, 1) if k >= 0):
                     shape = np.zeros(len(sensors), complex)
-                    shape[at] = each.modes[k].shape.complex_shape
-                    modes[-1][number] = each.modes[k].pole, shape
+                    mode = each.modes[k]
+                    shape[at] = np.where(np.isnan(mode.shape_std), 0, mode.shape.complex_shape)
+                    modes[-1][number] = mode.pole, shape
             write_uff55(path, self.names, modes, sensors, self.data.pairs)
         else:
             sensors = self.data.sensors
@@ -258,6 +259,7 @@ def _ends(path: Path, test: ModalTest, band: tuple[float, float] | None) -> tupl
         if (high - low) * setup.duration < ambient.LEAST_LINES:
             expected = f"a band of {ambient.LEAST_LINES} lines of set {setup.name!r} at least"
             reach = f"{low:g} to {high:g} Hz of {setup.duration:g} s at {setup.rate:g} per s"
+            reach += ": is the time in s?" * (high < low)
             raise wrong(path, expected, reach, "band")
         ends += low, high
     for data_set in test.sets:

@@ -28,6 +28,7 @@ class Geometry(Shown):
     motion : (3 nodes, N) displacement x, y, z of node after node from the degrees of freedom
     sensor_nodes : (sensors,) node of each sensor
     sensor_directions : (sensors, 3) unit vector that each sensor measures; zero for a rotation
+    numbers : (nodes,) of a program that study files go by; None where they go by coordinates
     """
 
     nodes: Floats
@@ -35,6 +36,7 @@ class Geometry(Shown):
     motion: csr_array
     sensor_nodes: Ints
     sensor_directions: Floats
+    numbers: Ints | None = None
 
     def weights(self, nodes: Ints, directions: Floats) -> csr_array:
         """Return weights (sensors, N) of sensors at nodes along ``directions`` (sensors, 3)."""

@@ -251,6 +251,10 @@ class PeakResponse(modal.ModalPrediction):
         low, top = self.band or (0.0, modal.ABOVE * modal.filled(highest, "band"))
         out = replace(self, band=(low, top), modes=self.complete_modes(problem, top))
         omega, faults = out.nominal(problem).omega, []
+        known = np.append(omega / (2 * math.pi), problem.data.mean_frequency)
+        if not ((low <= known) & (known <= top)).any():
+            expected = "a band with a frequency of the nominal model, or a measured one"
+            faults.append(Fault("", "band", expected, f"{low:g} to {top:g} Hz"))
         last, count = float(omega[-1]) / (2 * math.pi), omega.size
         reached = problem.model, problem.start, top, count
         more = modal.modes_reaching(*reached) if last < top else count

@@ -29,6 +29,7 @@ def read(path: Path, options: base.JobOptions) -> base.Listed:
     notes: list[str] = []
     job = re.sub(r"_STIF\d+$", "", files[0].stem, flags=re.IGNORECASE)
     deck = deck_of(options.deck or files[0].with_name(job + ".inp"), notes)
+    notes += base.turned(deck.turned if deck else ())
     if deck is not None and deck.parts:
         notes.append("the deck numbers nodes in parts: coordinates are left out")
     mesh = None if deck is None or deck.parts else deck.mesh

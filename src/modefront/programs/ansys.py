@@ -33,6 +33,8 @@ from modefront.programs.base import JobOptions, Listed, entries_of, existing, gi
 
 MATRICES = {"stiffness": ("_K", "K", "_stiff", "_STIFF"), "mass": ("_M", "M", "_mass", "_MASS")}
 
+ROTATED = "directions are those of the nodes' own systems (NROTAT), which the files do not tell"
+
 ADVICE = "a modal analysis writes file.full (WRFULL,1 stops there), *EXPORT,…,MMF job_K.mmf"
 
 
@@ -52,7 +54,8 @@ def read(path: Path, options: JobOptions) -> Listed:
         found = existing(file, f"the {what} of Ansys", ADVICE)
         matrices.append(read_entries(found, form=".mtx"))
         files.append(found)
-    return Listed((files[0], files[1]), matrices, _labels(path, options, matrices[0].shape[0]))
+    dofs = _labels(path, options, matrices[0].shape[0])
+    return Listed((files[0], files[1]), matrices, dofs, notes=[ROTATED])
 
 
 class _Words:
@@ -103,7 +106,7 @@ def _from_full(words: _Words, path: Path) -> Listed:
         M = entries_of(diagonal, diagonal, words.record(long(27, 28), "<f8"), size)
     else:
         M = _rows(words, long(27, 28), terms, size)
-    notes = ["there is a damping matrix, which is left out"] if int(header[34]) else []
+    notes = [ROTATED, *["there is a damping matrix, which is left out"] * bool(header[34])]
     return Listed((path, path), (K, M), dofs, free=lambda *_: identifiers > 0, notes=notes)
 
 

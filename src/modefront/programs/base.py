@@ -153,6 +153,13 @@ class Listed:
     notes: Sequence[str] = ()
 
 
+def turned(nodes: Sequence[object]) -> list[str]:
+    """Return the note of nodes, or sets of them, whose directions are not those of the whole."""
+    some = ", ".join(map(str, nodes[:6]))
+    of = "directions of sensors, pictures and a base that moves are those of the nodes' own systems"
+    return [f"{of} at node {some}"] * bool(some)
+
+
 def entries_of(row: Ints, column: Ints, value: Floats, size: int) -> scipy.sparse.coo_array:
     """Return the entries of a matrix (size, size); raises ValueError where one is beyond it."""
     return scipy.sparse.coo_array((value, (row, column)), shape=(size, size))

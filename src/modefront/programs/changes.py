@@ -135,7 +135,7 @@ def write_deck(study: Path, theta: Mapping[str, float], folder: Path) -> str:
     if kept is None or known - set(theta):
         return ""
     if unknown := [name for name in theta if name not in known]:
-        return f"{changes[0].file}: the numbers that {', '.join(unknown)} multiplies are not known"
+        return f"{changes[0].file}: which numbers belong to {', '.join(unknown)} is not known"
     lines = dict(enumerate(text_of(kept).splitlines(keepends=True), start=1))
     for each in changes:
         if lines.get(each.line, "").splitlines() != [each.text]:

@@ -27,6 +27,7 @@ _TYPES = (  # beginnings of the names of element types, and the cells that they 
 )
 
 
+# 11 fields: one for each kind of entry of a deck.
 @dataclass
 class Deck:
     """Nodes, elements and constraints of a deck, as they are collected while it is read."""
@@ -41,6 +42,7 @@ class Deck:
     others: set[int] = field(default_factory=set)  # nodes of all other elements
     bodies: list[str] = field(default_factory=list)  # nodes of rigid bodies, or their sets
     guides: list[str] = field(default_factory=list)  # reference nodes of bodies and couplings
+    turned: list[str] = field(default_factory=list)  # sets of nodes with systems of their own
     parts: bool = False  # whether nodes are numbered in parts: numbers of matrices are others
 
     @cached_property
@@ -68,7 +70,11 @@ def read_deck(path: Path) -> Deck:
     deck, more = Deck(), False  # whether other lines make nodes, or these may be in another file
     for keyword, options, rows in _blocks(path):
         more |= "INPUT" in options or keyword in ("NGEN", "NFILL", "NCOPY", "NMAP")
-        if take := _TAKEN.get(keyword):
+        if keyword == "TRANSFORM":
+            deck.turned.append(options.get("NSET", ""))
+        if deck.parts or keyword in ("PART", "INSTANCE"):
+            deck.parts = True
+        elif take := _TAKEN.get(keyword):
             try:
                 take(deck, options, rows)
             except ValueError as error:
@@ -77,9 +83,6 @@ def read_deck(path: Path) -> Deck:
         elif keyword in ("RIGID BODY", "COUPLING"):
             deck.bodies.append(options.get("NSET", ""))
             deck.guides += [options.get(name, "") for name in ("REF NODE", "ROT NODE")]
-        elif keyword in ("PART", "INSTANCE"):
-            deck.parts = True
-            break
     if not deck.parts and not more:
         if not deck.nodes:
             raise wrong(path, "nodes (*NODE)", "none")

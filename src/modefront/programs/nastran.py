@@ -87,9 +87,11 @@ def _deck(path: Path, options: base.JobOptions, notes: list[str]) -> "Bulk | Non
         notes.append(f"there is no deck ({path.stem}.dat or .bdf), and so there are no coordinates")
         return None
     try:
-        return read_bulk(deck)
+        bulk = read_bulk(deck)
     except OSError as error:
         raise wrong(deck, "a deck that can be read", reason(error)) from None
+    notes += base.turned(sorted(bulk.turned))
+    return bulk
 
 
 def _from_op4(path: Path, options: base.JobOptions) -> base.Listed:
@@ -115,9 +117,6 @@ def _from_op4(path: Path, options: base.JobOptions) -> base.Listed:
         _check_labels(path, deck, K, dofs, rows)
         return rows
 
-    if deck.turned:
-        some = ", ".join(map(str, sorted(deck.turned)[:6]))
-        notes.append(f"directions are those of the nodes' own systems at node {some}")
     return replace(listed, dofs=dofs, free=free, mesh=_drawn(deck, notes))
 
 

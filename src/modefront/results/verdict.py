@@ -117,7 +117,7 @@ def _fixed(data: Dataset) -> Iterator[str]:
 
 
 def _pairs(data: Dataset) -> Iterator[str]:
-    unlike = data["likely_mode"].values != _row(data, Kind.MOST_PROBABLE)["paired_mode"].values
+    unlike = data["mac_mode"].values != _row(data, Kind.MOST_PROBABLE)["paired_mode"].values
     if unlike.any():
         modes = enumeration([str(r) for r in data["mode"].values[unlike]])
         yield _say("unlike", modes=modes)

@@ -27,6 +27,7 @@ from modefront.outputs import write_table, write_text
 from modefront.programs.base import ProgramMesh, read_mesh
 from modefront.programs.changes import CHANGES, read_changes, write_deck
 from modefront.results.files import FILE, read_dataset
+from modefront.results.remarks import verdict
 from modefront.results.results import ReportedModel, Results
 from modefront.results.shapes import write_grid
 from modefront.study.definition import Study
@@ -47,11 +48,13 @@ class Exported(Shown):
     label : of the model
     files : that were written
     missing : what was not written, and why
+    warning : why the verdict refuses the models of the results; empty where it does not
     """
 
     label: str
     files: tuple[Path, ...]
     missing: tuple[str, ...]
+    warning: str = ""
 
 
 def export(
@@ -101,6 +104,7 @@ def export(
         expected = f"the study of the results in '{folder}'"
         raise wrong(Path(study), expected, "other inputs: run it again", "study")
     model = Results(data, loaded.problem).model(point)
+    warning = "" if data.attrs["reference"] else verdict(data)[0]
     output = Path(output) if output else folder / file_name(f"export-{point}")
     try:
         # As many modes as there are degrees of freedom with mass.
@@ -109,14 +113,14 @@ def export(
         with writing(output):
             output.mkdir(parents=True, exist_ok=True)
             with tempfile.TemporaryDirectory(dir=output, prefix=".export-") as unfinished:
-                missing = _write(model, loaded.file, Path(unfinished), count)
+                missing = _write(model, loaded.file, Path(unfinished), count, warning)
                 deck = write_deck(loaded.file.parent, model.theta, Path(unfinished))
                 missing += [deck] if deck else []
                 files = sorted(Path(unfinished).iterdir())
                 moved = tuple(Path(shutil.move(file, output / file.name)) for file in files)
     except ModelError as error:
         raise UnfinishedError(str(error)) from None
-    return Exported(point, moved, tuple(missing))
+    return Exported(point, moved, tuple(missing), warning)
 
 
 def _find_study(results: Path, name: str, digest: str) -> Study:
@@ -160,7 +164,7 @@ def _find_study(results: Path, name: str, digest: str) -> Study:
     raise wrong(results, expected, found, "study")
 
 
-def _write(model: ReportedModel, study: Path, folder: Path, modes: int) -> list[str]:
+def _write(model: ReportedModel, study: Path, folder: Path, modes: int, warning: str) -> list[str]:
     """Write all files of a model into a folder that is there; return what could not be written.
 
     Raises ModelError where the model has no matrices or no such modes.
@@ -169,6 +173,7 @@ def _write(model: ReportedModel, study: Path, folder: Path, modes: int) -> list[
     rows = [(name, repr(value)) for name, value in values.items()]
     write_table(folder / "parameters.csv", [("parameter", "value"), *rows])
     content = {"label": model.label, "kind": model.kind, "parameters": values}
+    content |= {"warning": warning} if warning else {}
     write_text(folder / "parameters.json", json.dumps(content, indent=2, ensure_ascii=False) + "\n")
     for name, A in (("K", model.stiffness), ("M", model.mass)):
         matrix = scipy.sparse.coo_array(A)
@@ -202,7 +207,7 @@ def _write(model: ReportedModel, study: Path, folder: Path, modes: int) -> list[
         write_grid(folder / "modes.vtu", mesh.coordinates, cells, {**data, "node": number})
     known = study.parent / CHANGES
     changes = read_changes(known) if known.is_file() else []
-    lines = [f"updated values, model '{model.label}'"]
+    lines = [f"updated values, model '{model.label}'", *[warning] * bool(warning)]
     for name, value in model.theta.items():
         said = [
             f"  {change.file}, line {change.line}:\n  {change.updated(value).strip()}"

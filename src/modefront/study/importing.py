@@ -448,6 +448,8 @@ def import_deck(
     if error >= 1e-4:  # as the digits of the program do not explain
         said = f"the program prints {' '.join(f'{x:.5g}' for x in printed)} Hz"
         note = f"{said}, up to {100 * error:.2g} % from those of its matrices"
+        if error >= 1e-3 and any(x.startswith("section:") for x in parameters.values()):
+            note += ": shells so thin lose digits by section:NAME, and keep them by material:NAME"
     return replace(imported, notes=(*imported.notes, note))
 
 

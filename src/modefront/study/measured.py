@@ -124,8 +124,9 @@ def _of_nodes(
                 else:
                     inner.fault("node", "a node of the test", str(chosen["node"]))
         elif (place := modes.place(name) or _by_coordinates(modes, in_space, s)) is None:
-            expected = f"{name} = node and direction, one of {known}: the file does not say "
-            table.fault("sensors", f"{expected}which sensor is which", "nothing")
+            expected = f"{name} = node and direction, one of {known}: the file does not say which "
+            expected += "sensor is which, nor do coordinates in the unit of the model"
+            table.fault("sensors", expected, "nothing")
         if place is None:
             continue
         placed[name] = place
@@ -150,7 +151,8 @@ def _by_coordinates(
     direction = np.concatenate([geometry.sensor_directions[s], np.zeros(3)])
     distance = np.linalg.norm(modes.position - geometry.nodes[geometry.sensor_nodes[s]], axis=1)
     nearest = int(np.argmin(distance))
-    size = float(np.linalg.norm(np.ptp(modes.position, axis=0)))
+    # Of the lesser one, as one may be in m and the other in mm.
+    size = min(np.linalg.norm(np.ptp(x, axis=0)) for x in (modes.position, geometry.nodes))
     is_known = direction.any() and np.isfinite(modes.axes[nearest]).all()
     if not is_known or distance[nearest] > 0.01 * size:  # another node would be as likely
         return None

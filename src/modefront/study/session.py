@@ -204,7 +204,7 @@ def worked(study: Study, work: Run) -> Dataset:
         front = replace(front, points=[*front.points, Point(Kind.MOST_PROBABLE, maxima[0])])
         draws = max(DRAWS, study.uncertainty.draws)
         along = [x.solution.theta for x in of_kind(front.points, Kind.FRONT)]
-        inference = infer(noise, [x.theta for x in maxima], along, draws, seed, again)
+        inference = infer(noise, maxima, along, draws, seed, again)
     options = study.pareto, study.identifiability, study.uncertainty
     analysis = analyse_front(problem, front, *options, seed, again)
     (nominal,) = work.run([Task(("nominal",), problem.evaluate, (problem.start,))])

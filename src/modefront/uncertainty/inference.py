@@ -88,14 +88,19 @@ def maximum(noise: NoiseModel, start: Floats) -> Solution:
 
 
 def _in_problem(problem: UpdatingProblem, noise: NoiseModel, found: Solution) -> Solution:
-    """Return a maximum as a solution of the problem, in its units; idle parameters are nominal."""
+    """Return a maximum as a solution of the problem, in its units; idle parameters are nominal.
+
+    Its frequencies and MAC values are those of the most likely pairs, which its objectives, as
+    those of the front, do not know.
+    """
     effects = np.vstack([each.dr for each in found.evaluation.residuals[:-1]])
     theta = np.where(effects.any(axis=0), found.theta, problem.start)
     evaluation = problem.evaluate(theta, second=True)
     J, own = found.J[:-1], evaluation.J
     unit = np.divide(J, own, out=np.ones(J.size), where=own > 0)
     w = noise.programme.gradient(found.J)[:-1] * unit
-    return replace(found, evaluation=evaluation, weights=w)
+    pairs = {**found.evaluation.quantities, "mac_mode": evaluation.quantities["paired_mode"]}
+    return replace(found, evaluation=replace(evaluation, quantities=pairs), weights=w)
 
 
 def refused(misfit: Floats, nominal: Floats) -> tuple[Bools, Bools]:
@@ -141,23 +146,24 @@ class Inference:
 # 6 arguments: the posterior and the models that are known, how many are drawn, and how.
 def infer(
     noise: NoiseModel,
-    maxima: Sequence[Floats],
+    maxima: Sequence[Solution],
     front: Sequence[Floats],
     count: int,
     seed: int,
     work: Executor,
 ) -> Inference:
-    """Return what follows from the posterior with maxima (p,), the greatest first, by draws.
+    """Return what follows from the posterior with maxima, the greatest first, by draws.
 
     The models (p,) of the ``front`` are compared with what is expected, too.
     """
-    theta = maxima[0]
+    theta = maxima[0].theta
     (along,) = work.run([Task(("most-probable", "front"), _misfits, (noise, front))])
     (fit,) = work.run([Task(("most-probable", "fit"), _fit, (noise, theta))])
     (free,) = work.run([Task(("most-probable", "freed"), freed, (noise, theta))])
     # One round where the model cannot be used.
     rounds = 1 if np.any(refused(fit["misfit"], fit["nominal_misfit"])) else None
-    draws = draw_models(noise, maxima, count, seed, work, rounds)
+    draws = draw_models(noise, [x.theta for x in maxima], count, seed, work, rounds)
+    fit["mac_mode"] = maxima[0].evaluation.quantities["mac_mode"]
     return Inference(draws, fit, free, unfixed(noise, theta, fit["misfit"], work), along)
 
 
@@ -177,7 +183,6 @@ def _fit(noise: NoiseModel, theta: Floats) -> dict[str, Any]:
         "nominal_misfit": before,
         "lack_of_fit": lack_of_fit(noise, found),
         "scatter_share": np.divide(noise.S, found.J, out=np.zeros(found.J.size), where=found.J > 0),
-        "likely_mode": found.quantities["paired_mode"],
         **candidates(noise, found),
     }
 

@@ -29,6 +29,9 @@ PULL = 1e-3  # weight of the distance from the nominal model: a normal prior of 
 USUAL = {"frequency": 0.005, "shape": 0.03}
 """Standard deviations of errors that are assumed, and said, where no one else says any."""
 
+FREQUENCY = number("a share above 0 and below 0.2, such as 0.005 for 0.5 %", above=0, below=0.2)
+SHAPE = number("a share above 0 and below 1, such as 0.03 for 3 %", above=0, below=1)
+
 NINETY = 1.6449  # half the 90 % interval of a normal distribution, over its standard deviation
 
 FARTHEST = 7.0  # distance from the median of a prior, in standard deviations, at most
@@ -48,8 +51,8 @@ class NoisePrior(Checked):
     weight : how many data this expectation is worth; 0 for none, and optimal weights
     """
 
-    frequency: Annotated[float, number("a number above 0", above=0)] | None = None
-    shape: Annotated[float, number("a number above 0", above=0)] | None = None
+    frequency: Annotated[float, FREQUENCY] | None = None
+    shape: Annotated[float, SHAPE] | None = None
     weight: Annotated[float, number("a number of 0 or more", least=0)] = 4.0
 
     def of(self, problem: UpdatingProblem, source: Source | None) -> "NoiseModel | None":
@@ -62,18 +65,25 @@ class NoisePrior(Checked):
             return None
         unsaid = {kind: size for kind, size in USUAL.items() if getattr(self, kind) is None}
         sizes = {kind: unsaid.get(kind) or getattr(self, kind) for kind in USUAL}
-        data, assumed = expected(problem.data, sizes, source)
         groups = tuple(Group(x.name, scale="std", **dict(x.chosen)) for x in problem.groups)
-        if any(True for group in groups for _ in faults(group, data)):
+
+        def data_of(sizes: Mapping[str, float]) -> ModalData | None:
+            data = expected(problem.data, sizes, source)
+            return None if any(True for x in groups for _ in faults(x, data)) else data
+
+        if (data := data_of(sizes)) is None:
             return None
+        said = [
+            f"{plural} to {100 * unsaid[kind]:g} %"
+            for kind, plural in (("frequency", "frequencies"), ("shape", "shapes"))
+            if kind in unsaid and data_of(sizes | {kind: np.nan}) is None  # some group needs it
+        ]
         scaled = replace(problem, data=data, groups=groups)
         parts = [[member.independent() for member in row] for row in scaled.members]
         a, S, d = np.array([np.sum(row, axis=0) for row in parts]).T
         least = NEGLIGIBLE * scaled.margins(*np.full((2, len(data.modes)), 2.0))
         d = np.where(least**2 < S, d, 0.0)  # copies of a data set say nothing of errors
         level = (self.weight + S) / (self.weight + d) if source == "sets" else np.ones(a.size)
-        plural = {"frequency": "frequencies", "shape": "shapes"}
-        said = [f"{plural[kind]} to {100 * unsaid[kind]:g} %" for kind in assumed if kind in unsaid]
         words = ", ".join(said).replace(" to", " known to", 1)
         logs = LogSum(a + self.weight, self.weight * level - S)
         return NoiseModel(replace(scaled, likelihood=logs), a, S, d, level, self.weight, words)
@@ -228,10 +238,8 @@ def prior_widths(problem: UpdatingProblem) -> Floats:
     return of.theta(z)[0] - of.theta(-z)[0]
 
 
-def expected(
-    data: ModalData, sizes: Mapping[str, float], source: Source | None
-) -> tuple[ModalData, tuple[str, ...]]:
-    """Return data with expected deviations, and the kinds of which some are of ``sizes``.
+def expected(data: ModalData, sizes: Mapping[str, float], source: Source | None) -> ModalData:
+    """Return data with expected deviations, those of ``sizes`` where they have none.
 
     They are such that means over the data sets become sums.
     """
@@ -241,7 +249,6 @@ def expected(
     given = np.asarray(std > NEGLIGIBLE * np.where(there, data.frequency, 1.0))
     sets = np.maximum(there.sum(axis=0), 1)
     frequency = np.where(given, std, sizes["frequency"] * data.frequency) / np.sqrt(sets)
-    assumed = ["frequency"] if (there & ~given).any() else []
 
     measured = np.asarray(np.isfinite(data.shape).any(axis=2))
     ratios = [
@@ -257,12 +264,10 @@ def expected(
         if known and std.any():
             size = without_negligible(std)
         else:
-            assumed += ["shape"]
             rms = np.sqrt((data.shape[k, r, here] ** 2).mean())
             size = np.full(here.sum(), sizes["shape"] * ratio * rms)
         shape[k, r, here] = size / np.sqrt(measured[:, r].sum())
     C = data.shape_covariance if known else None
     if C is not None:
         C = C / np.maximum(measured.sum(axis=0), 1)[:, None, None]
-    changed = replace(data, frequency_std=frequency, shape_std=shape, shape_covariance=C)
-    return changed, tuple(dict.fromkeys(assumed))
+    return replace(data, frequency_std=frequency, shape_std=shape, shape_covariance=C)

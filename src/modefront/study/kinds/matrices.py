@@ -139,7 +139,8 @@ def _geometry(dofs: DofTable, mesh: ProgramMesh, selection: scipy.sparse.csr_arr
     cells = tuple(
         Cells(kind, kind, np.searchsorted(mesh.number, table)) for kind, table in mesh.cells.items()
     )
-    return Geometry(mesh.coordinates, cells, motion[translations.ravel()], nodes, directions)
+    moved = motion[translations.ravel()]
+    return Geometry(mesh.coordinates, cells, moved, nodes, directions, mesh.number)
 
 
 def _size(model: opt.Table, terms: Terms, parameters: Sequence[str]) -> int | None:
