@@ -94,9 +94,8 @@ def rounding(pair: modal.ModalSystem, quantity: str, omega: Floats, g1: Floats) 
 
 
 DEGREE = 24  # degree of the series; twice as many intervals with half of it cost about the same
-NODES = chebyshev.chebpts1(DEGREE + 1)
-# Interpolation at the Chebyshev points of the first kind is a discrete orthogonal sum.
-SUMS = (2 / (DEGREE + 1)) * chebyshev.chebvander(NODES, DEGREE).T
+NODES = chebyshev.chebpts1(DEGREE + 1)  # of the interpolation, of the first kind
+SUMS = (2 / (DEGREE + 1)) * chebyshev.chebvander(NODES, DEGREE).T  # discrete orthogonal sums
 
 RESOLVED = 1e-12  # last coefficients of a series that is done, over its largest one
 SETTLED = 1e-8  # last step of Newton's method at a zero, over it; elsewhere steps stay long
