@@ -37,7 +37,9 @@ TASKS = {
     "trials": [[*PYTEST, "--dist", "loadfile", "--no-loadscope-reorder", "-m", "slow"]],
     "verify": [["benchmarks/verify.py"]],
     "spoil": [["tests/trials/trials.py"]],
-    "docs": [["-m", "sphinx", "-q", "-W", "--keep-going", "docs", "docs/_build/html"]],
+    "docs": [
+        ["-m", "sphinx", "-q", "-j", "auto", "-W", "--keep-going", "docs", "docs/_build/html"]
+    ],
     "lint": [
         ["-m", "ruff", "format", "--check", "."],
         ["-m", "ruff", "check", "."],

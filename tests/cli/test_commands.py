@@ -35,6 +35,8 @@ from modefront.study.file import load
 from modefront.uncertainty.prior import NoisePrior
 from modefront.work import store as lock
 
+pytestmark = pytest.mark.usefixtures("short_chains")
+
 STUDY = (
     """
 [study]

@@ -49,7 +49,7 @@ def test_the_example_gives_the_modal_data_it_comes_with(tmp_path: Path) -> None:
         load(study)
 
 
-@pytest.mark.slow(5)
+@pytest.mark.slow(20)
 def test_an_ambient_test_of_three_setups_is_one_set(tmp_path: Path) -> None:
     write("ambient-test", tmp_path)
     pictures = tmp_path / "pictures"

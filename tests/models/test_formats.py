@@ -224,8 +224,8 @@ def test_hostile_files(kind: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatc
 @pytest.mark.slow(3)
 def test_variables_that_grow(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     refused(tmp_path / "A.mat", bomb(), monkeypatch)
-    data = np.zeros((20_000, 14_000))
-    content = npz(format=b"dia", shape=data.shape, data=data, offsets=range(20_000))
+    data = np.zeros((12_000, 12_000))
+    content = npz(format=b"dia", shape=data.shape, data=data, offsets=range(12_000))
     refused(tmp_path / "A.npz", content, monkeypatch)
 
 

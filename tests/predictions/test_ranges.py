@@ -179,7 +179,8 @@ def test_where_a_model_has_no_value_it_is_left_out() -> None:
     assert greatest == pytest.approx(1.5, rel=1e-2)
 
 
-@pytest.mark.slow(7)
+@pytest.mark.slow(4)
+@pytest.mark.usefixtures("short_chains")
 def test_results_have_the_range_over_stiffness_and_mass_scaled_together() -> None:
     """The receptance falls as 1 / t when all stiffnesses and masses are scaled by t."""
     names = ("k", "m")

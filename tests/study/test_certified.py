@@ -30,7 +30,7 @@ from modefront.study.definition import Study
 from modefront.work.store import Run
 from modefront.work.task import Costs, Executor, R, Task, counted
 
-pytestmark = pytest.mark.slow(2)
+pytestmark = [pytest.mark.slow(2), pytest.mark.usefixtures("short_chains")]
 
 N = 14
 STUDY = (

@@ -142,18 +142,19 @@ def test_a_reversed_sensor(example: str, sensor: str, tmp_path: Path) -> None:
     assert f"check the direction of {sensor}" in text
 
 
-@pytest.mark.slow(65)
+@pytest.mark.slow(15)
 def test_a_reversed_sensor_that_moves_too_little_for_the_mac() -> None:
-    names = [f"k{i + 1}" for i in range(50)]
-    model = chain(names, [1.0] * 50, [1e4] * 50, sensors={f"s{i}": i for i in range(50)})
-    structure = model.modes(np.linspace(0.97, 1.05, 50), 4, derivatives=False)
+    names = [f"k{i + 1}" for i in range(10)]
+    springs, sensors = [names[i // 5] for i in range(50)], {f"s{i}": i for i in range(50)}
+    model = chain(names, [1.0] * 50, [1e4] * 50, stiffness_parameters=springs, sensors=sensors)
+    structure = model.modes(np.linspace(0.97, 1.05, 10), 4, derivatives=False)
     size = np.abs(structure.phi).max(axis=0)
     noise = 0.1 * size * np.random.default_rng(1).standard_normal(structure.phi.shape)
     noise[0] /= 20
     shape = (structure.phi + noise).T
     first = shape[:, 0].copy()
     groups = (Group("shapes", shape="all"),)
-    unit = np.ones(50)
+    unit = np.ones(10)
     for sign, expected in ((1.0, []), (-1.0, [("reversed-sensor", "s0, all data")])):
         shape[:, 0] = sign * first
         data = modal_data(structure.frequency, shape, model.sensors)

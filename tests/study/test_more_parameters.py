@@ -17,6 +17,8 @@ from modefront.front.search import Search
 from modefront.identifiability.combinations import Identifiability
 from modefront.study import session
 
+pytestmark = pytest.mark.usefixtures("short_chains")
+
 NAMES = tuple(f"k{i + 1}" for i in range(6))
 SEARCH = Search(doubt=0.5)
 TRUTH = np.array([1.2, 0.8, 1.1, 0.9, 1.3, 0.75])
@@ -69,7 +71,7 @@ def row(data: xr.Dataset, label: str) -> xr.Dataset:
     return data.isel(point=data["label"].values.tolist().index(label))
 
 
-@pytest.mark.slow(7)
+@pytest.mark.slow(2)
 @pytest.mark.parametrize("std", [True, False])
 def test_the_most_probable_model_is_preferred_where_all_is_fitted_exactly(std: bool) -> None:
     data, _ = solved(std=std)
@@ -111,7 +113,7 @@ def dominated(J: Floats, known: Floats, scale: Floats) -> bool:
     return False
 
 
-@pytest.mark.slow(7)
+@pytest.mark.slow(2)
 @pytest.mark.parametrize("std", [True, False])
 def test_pareto_is_what_no_model_reported_or_evaluated_dominates(std: bool) -> None:
     data, front = solved(std=std)
@@ -129,7 +131,7 @@ def test_pareto_is_what_no_model_reported_or_evaluated_dominates(std: bool) -> N
     assert data["dominated_among_front"].values.tolist() == among
 
 
-@pytest.mark.slow(6)
+@pytest.mark.slow(2)
 @pytest.mark.parametrize("std", [True, False])
 def test_no_edge_is_worse_than_any_evaluated_model(std: bool) -> None:
     data, front = solved(std=std)
@@ -182,7 +184,7 @@ a,2,7.25,0.036,,1.0,0.02,-0.71,0.02
 """
 
 
-@pytest.mark.slow(8)
+@pytest.mark.slow(3)
 def test_a_run_that_is_interrupted_goes_on_to_the_same_digits(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

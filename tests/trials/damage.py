@@ -2,38 +2,41 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
 
 import numpy as np
 import xarray as xr
 
 
-def damages(data: xr.Dataset) -> Iterator[tuple[str, xr.Dataset]]:
-    """Yield what was done to results, and what has become of them."""
+def damages(data: xr.Dataset) -> Iterator[tuple[str, Callable[[], xr.Dataset]]]:
+    """Yield what is done to results, and what returns them so."""
     for name in map(str, data.variables):
-        yield f"{name} is dropped", data.drop_vars([name])
+        yield f"{name} is dropped", partial(data.drop_vars, [name])
         values = data[name]
         for what, changed in _changed(values.values):
             if name in data.dims:
                 if changed.shape == values.shape:
-                    yield f"{name} {what}", data.assign_coords({name: changed})
+                    yield f"{name} {what}", partial(data.assign_coords, {name: changed})
             elif changed.ndim == values.ndim:
                 dims = [d if n == m else f"{name}_{d}" for d, n, m in _sizes(values, changed)]
-                yield f"{name} {what}", data.assign({name: (dims, changed)})
+                yield f"{name} {what}", partial(data.assign, {name: (dims, changed)})
             else:
                 dims = [f"other_{k}" for k in range(changed.ndim)]
-                yield f"{name} {what}", data.drop_vars([name]).assign({name: (dims, changed)})
+                rest = data.drop_vars([name])
+                yield f"{name} {what}", partial(rest.assign, {name: (dims, changed)})
     for name in map(str, data.dims):
-        yield f"dimension {name} is empty", data.isel({name: slice(0)})
-        yield f"dimension {name} has one", data.isel({name: slice(1)})
-        yield f"dimension {name} lacks one", data.isel({name: slice(1, None)})
+        yield f"dimension {name} is empty", partial(data.isel, {name: slice(0)})
+        yield f"dimension {name} has one", partial(data.isel, {name: slice(1)})
+        yield f"dimension {name} lacks one", partial(data.isel, {name: slice(1, None)})
         twice = [*range(data.sizes[name]), *range(data.sizes[name])]
-        yield f"dimension {name} has all twice", data.isel({name: twice})
+        yield f"dimension {name} has all twice", partial(data.isel, {name: twice})
     for key, value in data.attrs.items():
-        rest = {name: other for name, other in data.attrs.items() if name != key}
-        yield f"attribute {key} is dropped", _with(data, rest)
+        others = {name: other for name, other in data.attrs.items() if name != key}
+        yield f"attribute {key} is dropped", partial(_with, data, others)
         for other in ("", "text", "\x1b[31m", -1, 0.5, np.nan, 1e300, np.arange(3), 2**62):
-            yield f"attribute {key} is {other!r}, not {value!r}", _with(data, {**rest, key: other})
+            changes = {**others, key: other}
+            yield f"attribute {key} is {other!r}, not {value!r}", partial(_with, data, changes)
 
 
 def _with(data: xr.Dataset, attributes: dict[str, object]) -> xr.Dataset:

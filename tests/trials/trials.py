@@ -152,7 +152,7 @@ def damaged(folder: Path, commands: Sequence[Sequence[str]], every: int, seed: i
         if (number + seed) % every:
             continue
         path.unlink(missing_ok=True)
-        changed.to_netcdf(path, engine="h5netcdf")
+        changed().to_netcdf(path, engine="h5netcdf")
         for command in commands:
             outcome.take(f"{what}, {' '.join(command)}", worker.ask(command))
         if (number + 1) % OFTEN == 0:

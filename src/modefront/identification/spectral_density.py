@@ -70,13 +70,13 @@ class Band:
     order: int  # differentiations of the displacement in the records
     floor: Floats  # (sensors,) variances of the background a priori
 
-    @property
+    @cached_property
     def total(self) -> Floats:
         """Sum of the real part of F F^* over the lines, and of the background a priori."""
         prior = (PRIOR + len(self.floor)) * np.diag(self.floor)
         return np.tensordot(self.count, self.power.real, 1) + prior
 
-    @property
+    @cached_property
     def weight(self) -> float:
         """Number of lines, and of those that the prior is worth."""
         return float(self.count.sum() + PRIOR + len(self.floor))

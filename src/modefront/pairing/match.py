@@ -96,7 +96,7 @@ def match(
     cost = np.nan_to_num(np.where(np.isnan(values), distance, 1 - values))
     index = assigned(cost + outside)
     if squares is not None and likelihood is not None:
-        silent = np.asarray(~squares.any(axis=(0, 2)))[:, None]
+        silent, flat = np.asarray(~squares.any(axis=(0, 2)))[:, None], squares.reshape(-1, m * q)
         rest = np.where(silent, cost, 0.0)
         nearest = np.where(np.isnan(distance), cost, distance)
         found, starts = [], [index, assigned(nearest + outside)]
@@ -107,8 +107,7 @@ def match(
                 if (now := likelihood.value(J)) >= value:
                     break
                 value, kept = now, index
-                w = likelihood.gradient(J)
-                total = np.tensordot(w, squares, axes=1) + rest
+                total = (likelihood.gradient(J) @ flat).reshape(m, q) + rest
                 index = assigned(total + total.max() * outside)
             found.append((value, kept))
         index = min(found, key=lambda x: x[0])[1]

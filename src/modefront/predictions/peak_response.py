@@ -94,6 +94,8 @@ def rounding(pair: modal.ModalSystem, quantity: str, omega: Floats, g1: Floats) 
 
 
 DEGREE = 24  # degree of the series; twice as many intervals with half of it cost about the same
+NODES = chebyshev.chebpts1(DEGREE + 1)  # of the interpolation, of the first kind
+SUMS = (2 / (DEGREE + 1)) * chebyshev.chebvander(NODES, DEGREE).T  # discrete orthogonal sums
 
 RESOLVED = 1e-12  # last coefficients of a series that is done, over its largest one
 SETTLED = 1e-8  # last step of Newton's method at a zero, over it; elsewhere steps stay long
@@ -144,11 +146,9 @@ def peaks(
 def _zeros(pair: modal.ModalSystem, quantity: str, a: float, b: float) -> Floats:
     """Return the zeros of g in [a, b], to about the accuracy of the series."""
     middle, half = (a + b) / 2, (b - a) / 2
-    x = chebyshev.chebpts1(DEGREE + 1)
-    omega = middle + half * x
+    omega = middle + half * NODES
     g, g1 = slope(pair, quantity, omega)
-    # Interpolation at the Chebyshev points of the first kind is a discrete orthogonal sum.
-    series = (2 / (DEGREE + 1)) * chebyshev.chebvander(x, DEGREE).T @ g
+    series = SUMS @ g
     series[0] /= 2
     enough = max(RESOLVED * abs(g).max(), rounding(pair, quantity, omega, g1).max())
     if abs(series[-2:]).max() > enough:

@@ -20,6 +20,7 @@ import numpy as np
 from scipy.special import chdtri, gammainc, gammaln, ndtr, ndtri, softmax
 
 from modefront._typing import Floats
+from modefront.linalg.affine import first_axis
 from modefront.models.reduced.model import ReducedModel
 from modefront.optim.problem import Evaluation
 from modefront.optim.scalarisation import LogSum
@@ -143,7 +144,7 @@ class Peak:
 
     def precision(self, s: Floats) -> Floats:
         """Return A (p, p)."""
-        return _definite(np.tensordot(1 / s, self.squares, axes=1))
+        return _definite(first_axis(1 / s[None], self.squares)[0])
 
     def narrow(self, rng: np.random.Generator) -> bool:
         """Return whether proposals are worth less than 1 / WIDE draws of the linear model each.
@@ -159,7 +160,7 @@ class Peak:
         weights: list[Floats] = []
         s = np.tile(self.expected, (chains, 1))
         for _ in range(steps):
-            L = np.linalg.cholesky(_definite(np.tensordot(1 / s, squares, axes=1)))
+            L = np.linalg.cholesky(_definite(first_axis(1 / s, squares)))
             b = np.linalg.solve(L, -(z + 1 / s @ g)[..., None])
             size = np.log(np.diagonal(L, axis1=1, axis2=2)).sum(axis=1)
             size += np.log(s) @ (self.logs.a - self.free) / 2
@@ -206,7 +207,7 @@ class Peak:
         """Return the inverse (p, p) of F's derivative at the peak, a step (p,), and its bend."""
         inverse = np.asarray(np.linalg.inv(self.forward(here)[1]), dtype=float)
         step = inverse @ missing
-        curved = np.tensordot(1 / here.s, self.curved @ step @ step, axes=1)
+        curved = 1 / here.s @ (self.curved @ step @ step)
         return inverse, step, inverse @ curved / -2
 
     def model(self, target: Standardised, u: Floats) -> Model | None:
