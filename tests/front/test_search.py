@@ -264,7 +264,7 @@ def test_a_model_that_takes_a_place_after_the_search_is_solved_for_from_there() 
     frequency = truth.frequency * (1 + 0.004 * rng.standard_normal((2, 4)))
     scales = ["k1", "k2", "k3", "", "k2"]
     model = mf.chain(names, [10.0] * 5, [2e4] * 5, stiffness_parameters=scales, sensors=sensors)
-    data = mf.modal_data(frequency, shapes, sensors, frequency_std=0.004 * frequency)
+    data = mf.modal_data(frequency, shapes, tuple(sensors), frequency_std=0.004 * frequency)
     groups = [
         mf.Group("frequencies", frequency="all", scale="std"),
         *(mf.Group("low", shape=[1, 2]), mf.Group("high", shape=[3, 4])),
