@@ -46,6 +46,25 @@ def along(problem: Problem, q: Any, thetas: Floats, slack: float = 0.0) -> tuple
     return least, greatest
 
 
+def test_a_range_holds_what_known_equivalent_models_predict() -> None:
+    """Of q = -(t - 0.6)^2 (t - 1.9)^2 + t / 100, x = y = z = t, two values are local maxima."""
+
+    def q(theta: Floats) -> float:
+        t = float(theta.mean())
+        return -((t - 0.6) ** 2) * (t - 1.9) ** 2 + 0.01 * t
+
+    problem, near = Ratios(), np.full((1, 3), 0.65)
+    far = np.array([[1.8, 1.8, 1.8], [1.9, 1.2, 1.9]])  # the second one is not equivalent
+    J, of_far = (np.array([problem.evaluate(x).J for x in models]) for models in (near, far))
+    value = np.array([q(near[0])])
+    front = Sampled(near, J, is_open=True)
+    assert extreme(problem, front, value, q, -1.0, 1e-4) < 0.01
+    known = Sampled(near, J, is_open=True, others=(far, of_far))
+    t = np.linspace(1.8, 2.0, 100_001)
+    best = (-((t - 0.6) ** 2) * (t - 1.9) ** 2 + 0.01 * t).max()
+    assert extreme(problem, known, value, q, -1.0, 1e-4) == pytest.approx(best, rel=1e-4)
+
+
 def test_models_scaled_together_reach_from_bound_to_bound() -> None:
     """x = y = z = t from 0.5 to 2: of q = t^2 + 1/t the least is within, at t = 2^(-1/3)."""
     calls = [0]

@@ -16,7 +16,7 @@ out. The constraints are a penalty on the greatest violation, which grows until 
 the bounds to which :math:`V_0 V_0^T e_j` leads promise more, the search goes on from there.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -56,6 +56,8 @@ class Sampled:
     J: Floats
     is_open: bool  # whether others are equivalent to these
     slack: float = 0.0  # share by which objectives of models may be greater that count
+    # (k, p) and (k, n) parameters and objectives of other models, of which some may be equivalent
+    others: tuple[Floats, Floats] | None = None
     # what has been solved for half-way between two models, for any prediction
     between: dict[bytes, list[Solution]] = field(default_factory=dict, repr=False)
 
@@ -75,17 +77,23 @@ class Equivalent:
     slack: float  # share by which objectives may be greater
     step: float  # of differences of a prediction, over the ranges of the parameters
 
-    def extreme(self, q: Values, sign: float) -> float:
-        """Return the least (sign 1) or greatest (-1) value of a prediction; NaN without any."""
+    def extreme(self, q: Values, sign: float, known: Iterable[Floats] = ()) -> float:
+        """Return the least (sign 1) or greatest (-1) value of a prediction; NaN without any.
+
+        ``known`` models (p,) are equivalent, too.
+        """
         theta, reached = self.model.theta, q(self.model.theta)
         is_open = self.slack > 0 or self.equations[1].shape[1] > 0
-        start: Floats | None = theta if is_open and np.isfinite(reached) else None
+        for other in known if np.isfinite(reached) else ():
+            if sign * (value := q(other)) < sign * reached:
+                theta, reached = other, value
+        first = start = theta if is_open and np.isfinite(reached) else None
         size = abs(reached) if reached else 1.0
         while start is not None:
             found = self._solve(q, size, sign, start)
             if found is not None and sign * q(found) < sign * reached:
                 theta, reached = found, q(found)
-            elif start is not self.model.theta:
+            elif start is not first:
                 break
             start = self._farther(q, sign, theta, reached)
         return reached
@@ -320,8 +328,11 @@ def extreme(
     def value(theta: Floats) -> float:
         if not front.is_open:
             return sign * q(theta)
-        here = problem.evaluate(theta)
-        return sign * Equivalent(problem, here, front.slack, step).extreme(q, sign)
+        models, known = Equivalent(problem, problem.evaluate(theta), front.slack, step), theta[:0]
+        if front.others is not None:
+            known, J = front.others
+            known = known[(models.level * (1 + SAME) >= J).all(axis=1)]
+        return sign * models.extreme(q, sign, known)
 
     along = _Along(problem, front, value)
     for theta, J, known in zip(front.theta, front.J, sign * values, strict=True):

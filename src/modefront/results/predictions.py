@@ -131,9 +131,9 @@ class PredictionRunner:
         here = of & (data["combination_at"].values == labels[best])
         is_open = (data["combination_share"].values[here] <= RANK).any()
         is_open |= (np.diag(data["collinearity"].values) == 0).any()
-        front = Sampled(
-            thetas[optimal], data["objective"].values[optimal], slack > 0 or bool(is_open), slack
-        )
+        J, others = data["objective"].values[optimal], data["equal_theta"].values
+        known = (others, data["equal_objective"].values) if others.size else None
+        front = Sampled(thetas[optimal], J, slack > 0 or bool(is_open), slack, known)
         for kind, predictions in self.kinds.items():
             of_points, _ = self.at_models(kind, thetas, "point", labels)
             values |= {x.name: of_points[x.key] for x in kind.variables}
