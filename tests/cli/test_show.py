@@ -105,6 +105,19 @@ def test_the_first_screen_sets_the_nominal_model_beside_the_reference_and_the_ed
     assert "hypervolume" in capsys.readouterr().out
 
 
+def test_intervals_are_shown_with_what_their_chains_are_worth(
+    two: xr.Dataset, capsys: pytest.CaptureFixture[str]
+) -> None:
+    print_results(two, ["uncertainty"])
+    lines = capsys.readouterr().out.splitlines()
+    row = [line.split() for line in lines if line.startswith("k1 ")][-1]
+    low, _, high = two["interval"].values[0]
+    r_hat, count = two["r_hat"].values[0], two["effective_draws"].values[0]
+    assert row == ["k1", f"{low:#.4g}", f"{high:#.4g}", f"{r_hat:.3f}", f"{count:.0f}"]
+    assert 0.9 < r_hat < 1.05
+    assert 1 < count <= len(two["sample_theta"])
+
+
 def test_no_deviation_is_shown_of_what_no_data_determine(
     two: xr.Dataset, capsys: pytest.CaptureFixture[str]
 ) -> None:

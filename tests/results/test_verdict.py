@@ -77,7 +77,8 @@ def test_a_bound_holds_a_parameter_where_no_search_beyond_it_converges() -> None
     draws = np.clip([0.5, 1.0] + 0.02 * np.random.default_rng(0).normal(size=(200, 2)), 0, 1)
     none, fit = np.zeros((200, 0)), {"misfit": np.ones(1), "nominal_misfit": np.ones(1)}
     fit |= {"lack_of_fit": np.full(1, np.nan)}
-    inference = Inference(Draws(draws, none, none), fit, None, None, np.zeros((0, 1)))
+    found = Draws(draws, none, none, *np.ones((2, 2)))
+    inference = Inference(found, fit, None, None, np.zeros((0, 1)))
     values = {
         "kind": (("point",), np.array(["most-probable"])),
         "theta": (("point", "parameter"), np.array([[0.5, 1.0]])),

@@ -231,6 +231,16 @@ def print_uncertainty(screen: Screen, data: Dataset) -> None:
             rows += [[text.format(title), number(x, ".3g", "")] for title, x in pairs]
         title = f"posterior around {preferred(data.attrs)}: standard deviations{_rough(data)}"
         screen.table(title, ["of", "std"], rows)
+        if "r_hat" in data:
+            low, _, high = data["interval"].values.T
+            numbers = low, high, data["r_hat"].values, data["effective_draws"].values
+            forms = "#.4g", "#.4g", ".3f", ".0f"
+            rows = [
+                [str(name), *map(number, row, forms)]
+                for name, *row in zip(data["parameter"].values, *numbers, strict=True)
+            ]
+            heads = ["of", "5 %", "95 %", "R-hat of chains", "effective draws"]
+            screen.table("intervals by draws from the posterior", heads, rows)
     elif "theta_std" not in data:
         screen.say("The results hold no uncertainty: the data have no errors that are known.")
 

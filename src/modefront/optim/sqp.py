@@ -35,7 +35,7 @@ from modefront._typing import Floats
 from modefront.optim.linearised import PENALTY, Linearised, UnitBox, augmented
 from modefront.optim.problem import DISTINCT, Evaluation, Problem, room, without_jump
 from modefront.optim.qp import QuadraticProgramme
-from modefront.optim.scalarisation import MARGIN, Constrained, Scalarisation, total
+from modefront.optim.scalarisation import LEAST, MARGIN, Constrained, Scalarisation, total
 from modefront.work.codec import record
 from modefront.work.progress import ITERATION, note
 
@@ -180,7 +180,7 @@ class _Jump:
         """
         slopes = self.start.dJ * (self.problem.upper - self.problem.lower)
         units = np.linalg.norm([here.weights @ slopes[:-1], slopes[-1]], axis=1)
-        within = Constrained(programme, *np.maximum(units, np.finfo(float).tiny).tolist())
+        within = Constrained(programme, *np.maximum(units, LEAST).tolist())
         found, _ = _descend(self.smooth, within, begin(self.start), Options())
         end = self.problem.evaluate(found.theta, second=True)
         held = found.converged and abs(found.J[-1]) <= 2 * MARGIN * within.last
@@ -195,8 +195,9 @@ def _jump(problem: Problem, here: Evaluation, beyond: Evaluation) -> _Jump | Non
     if smooth is None:
         return None
     start = smooth.evaluate(here.theta, second=True)
-    far = np.linalg.norm(start.dJ[-1] * (problem.upper - problem.lower))
-    return _Jump(problem, smooth, start) if -start.J[-1] <= 4 * DISTINCT * far else None
+    slope = np.linalg.norm(start.dJ[-1] * (problem.upper - problem.lower))
+    is_near = slope > np.finfo(float).eps and -start.J[-1] <= 4 * DISTINCT * slope
+    return _Jump(problem, smooth, start) if is_near else None
 
 
 # More than 60 lines: one step, with all that it changes.

@@ -302,6 +302,8 @@ def with_intervals(data: ArrayDataset, noise: NoiseModel, inference: Inference) 
         **fit,
         "front_misfit": along,
         "sample_theta": draws.theta,
+        "r_hat": draws.r_hat,
+        "effective_draws": draws.effective,
         "interval": interval,
         "trust": np.array(TRUST)[place],
         "prior_width": widths,

@@ -246,6 +246,8 @@ class Draws:
     theta: Floats  # (draws, p) parameters
     frequency: Floats  # frequency, mac: (draws, modes) of the most likely pairs of measured modes
     mac: Floats
+    r_hat: Floats  # r_hat, effective: (p,) R-hat of the chains, and the effective number of draws
+    effective: Floats
     settled: bool = True  # whether the chains agree, and are long enough for intervals
 
 
@@ -303,8 +305,9 @@ def draw_models(
                 near = _nearer(noise, some, 1, work)
             continue
         kept.append(np.array([x.z for x in found]))
-        ratio, size = agreement(np.concatenate(kept, axis=1))
-        settled = ratio < AGREE and size >= count / 2
+        r_hat, sizes = agreement(np.concatenate(kept, axis=1))
+        size = float(sizes.min())
+        settled = bool(r_hat.max() < AGREE) and size >= count / 2
         stuck = 2 * len(kept) >= rounds and size <= 2 * CHAINS
         if stuck or len(kept) == rounds or (settled and size >= count):
             break
@@ -316,14 +319,18 @@ def draw_models(
     rng = np.random.default_rng(seed_sequence(seed, stage, "order"))
     order = np.linspace(0, len(z) - 1, min(count, len(z))).round().astype(int)
     z = rng.permutation(z[order])
-    draws, share = _counted(noise, near, z, work)
-    return replace(draws, settled=settled and min(size, count) * share >= count / 2)
+    theta, frequency, mac, share = _counted(noise, near, z, work)
+    effective = np.minimum(sizes, count) * share
+    settled = settled and bool(effective.min() >= count / 2)
+    return Draws(theta, frequency, mac, r_hat, effective, settled)
 
 
-def _counted(noise: NoiseModel, near: NoiseModel, z: Floats, work: Executor) -> tuple[Draws, float]:
-    """Return draws z (n, p) from the posterior ``near`` this one, and the share that counts.
+def _counted(
+    noise: NoiseModel, near: NoiseModel, z: Floats, work: Executor
+) -> tuple[Floats, Floats, Floats, float]:
+    """Return theta, frequency and MAC of draws z (n, p), and the share that counts.
 
-    Each is there as often as its weight says.
+    They are from the posterior ``near`` this one: each is there as often as its weight says.
     """
     some = enumerate(np.array_split(z, CHAINS))
     key = "draws", len(z)
@@ -332,8 +339,7 @@ def _counted(noise: NoiseModel, near: NoiseModel, z: Floats, work: Executor) -> 
     w = softmax(weight)
     # of equal weights, each draw once
     chosen = np.searchsorted(np.cumsum(w), (np.arange(len(z)) + 0.5) / len(z))
-    draws = Draws(theta[chosen], frequency[chosen], mac[chosen])
-    return draws, float(1 / (w @ w) / len(z))
+    return theta[chosen], frequency[chosen], mac[chosen], float(1 / (w @ w) / len(z))
 
 
 def _weighed(noise: NoiseModel, near: NoiseModel, z: Floats) -> tuple[Floats, ...]:
@@ -490,10 +496,11 @@ def _drawn(mean: Floats, precision: Floats, rng: np.random.Generator) -> Floats:
     return mean + np.linalg.solve(np.linalg.cholesky(precision).T, rng.normal(size=mean.size))
 
 
-def agreement(x: Floats) -> tuple[float, float]:
-    """Return R-hat and the effective size of chains (chains, steps, p), of the worst parameter.
+def agreement(x: Floats) -> tuple[Floats, Floats]:
+    """Return R-hat and the effective size of chains (chains, steps, p), both (p,).
 
-    Of ranks, and of ranks of the distance from the median; each chain counts as two halves.
+    Of ranks, or of ranks of the distance from the median, whichever is worse; each chain counts as
+    two halves.
     """
     half = x.shape[1] // 2
     halves = np.concatenate([x[:, :half], x[:, -half:]])
@@ -514,4 +521,5 @@ def agreement(x: Floats) -> tuple[float, float]:
     pairs = np.minimum.accumulate(np.where(np.cumprod(pairs > 0, axis=0), pairs, 0.0), axis=0)
     tau = np.maximum(2 * pairs.sum(axis=0) - 1, 1 / np.log10(len(ranks)))
     ratio = np.sqrt(total / np.maximum(within, 1e-300))
-    return float(ratio.max()), float((len(ranks) / tau).min())
+    size = len(ranks) / tau
+    return ratio.reshape(2, -1).max(axis=0), size.reshape(2, -1).min(axis=0)
