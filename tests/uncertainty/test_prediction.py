@@ -119,6 +119,6 @@ def test_a_sample_is_summed_up_without_what_is_missing() -> None:
     values[3:5, 1] = 1.0, 3.0
     values[7, 2] = 1.0
     result = summary(values)
-    assert result[:, 0].tolist() == pytest.approx([50, np.sqrt(101 * 102 / 12), 5, 50, 95])
-    assert result[:, 1].tolist() == pytest.approx([2, np.sqrt(2), 1.1, 2, 2.9])
+    assert result[:, 0].tolist() == pytest.approx([50, np.sqrt(101 * 102 / 12), 4.1, 50, 95.9])
+    assert result[:, 1].tolist() == pytest.approx([2, np.sqrt(2), 1, 2, 3])
     assert np.isnan(result[:, 2]).all()

@@ -90,5 +90,5 @@ def summary(values: Floats) -> Floats:
         known = column[np.isfinite(column)]
         if known.size > 1:
             out[:2, i] = known.mean(), known.std(ddof=1)
-            out[2:, i] = np.quantile(known, [0.05, 0.5, 0.95])
+            out[2:, i] = np.quantile(known, [0.05, 0.5, 0.95], method="weibull")
     return out
