@@ -282,7 +282,7 @@ def draw_models(
     """
     stage = "sample-posterior"
     tasks = [Task(("peaks", k + 1), find_peak, (noise, x)) for k, x in enumerate(maxima)]
-    peaks = _mixture(noise, work.run(tasks))
+    peaks = mixture(noise, work.run(tasks))
     chains: Sequence[Chain | None] = [None] * CHAINS
     kept: list[Floats] = []
     rng = np.random.default_rng(seed_sequence(seed, stage, "wide"))
@@ -404,13 +404,15 @@ def find_peak(noise: NoiseModel, theta: Floats) -> tuple[Evaluation, Floats]:
     return at, np.tensordot(changes, L.T, axes=(0, 0))
 
 
-def _mixture(noise: NoiseModel, found: Sequence[tuple[Evaluation, Floats]]) -> list[Peak]:
+def mixture(noise: NoiseModel, found: Sequence[tuple[Evaluation, Floats]]) -> list[Peak]:
     """Return the peaks that count, each once."""
     peaks: list[Peak] = []
     for at, curved in sorted(found, key=lambda x: noise.programme.value(x[0].J)):
         new = Peak(at, noise.logs, curved)
-        ways = [new.behind(Model(y.at, new.expected)) - new.behind(new.top) for y in peaks]
-        if all(np.linalg.norm(way) > APART for way in ways):
+        others = [Model(y.at, new.expected) for y in peaks]
+        ways = [new.behind(y) - new.behind(new.top) for y in others]
+        near = [y for y, way in zip(others, ways, strict=True) if np.linalg.norm(way) <= APART]
+        if not any(new.reaches(Standardised(noise.problem), y) for y in near):
             peaks.append(new)
     value = [noise.programme.value(x.at.J) for x in peaks]
     size = [np.linalg.slogdet(x.precision(x.expected))[1] for x in peaks]
