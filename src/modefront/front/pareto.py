@@ -303,9 +303,9 @@ class _Run:
             if self.known:
                 out.append(replace(self.known.edges[k], best=place.incumbent, minima=minima))
                 continue
-            rare = known.hits(place, self.state.limits.tolerance) < SURE
-            rare = rare and not self.state.is_settled(place)
-            doubtful = rare and known.unseen() >= self.state.limits.doubt
+            limits, is_open = self.state.limits, not self.state.is_settled(place)
+            rare = is_open and known.hits(place, limits.tolerance) < SURE
+            doubtful = rare and known.unseen() >= limits.doubt
             out.append(Edge(place.incumbent, minima, known.tries, len(known.ends), doubtful))
         return out
 

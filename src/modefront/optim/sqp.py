@@ -196,6 +196,7 @@ def _jump(problem: Problem, here: Evaluation, beyond: Evaluation) -> _Jump | Non
         return None
     start = smooth.evaluate(here.theta, second=True)
     slope = np.linalg.norm(start.dJ[-1] * (problem.upper - problem.lower))
+    # The step that crossed it was shorter than that: the radius falls to a quarter of a step.
     is_near = slope > np.finfo(float).eps and -start.J[-1] <= 4 * DISTINCT * slope
     return _Jump(problem, smooth, start) if is_near else None
 

@@ -23,7 +23,7 @@ from functools import cached_property
 import numpy as np
 from scipy.linalg import null_space
 
-from modefront._typing import Floats
+from modefront._typing import Bools, Floats
 from modefront.front.dominance import undominated
 from modefront.front.subproblems import RHO
 from modefront.optim.lexicographic import EXACT, RANK, TIE
@@ -91,8 +91,8 @@ class Equivalent:
         size = abs(reached) if reached else 1.0
         while start is not None:
             found = self._solve(q, size, sign, start)
-            if found is not None and sign * q(found) < sign * reached:
-                theta, reached = found, q(found)
+            if found is not None and sign * found[1] < sign * reached:
+                theta, reached = found
             elif start is not first:
                 break
             start = self._farther(q, sign, theta, reached)
@@ -145,8 +145,14 @@ class Equivalent:
         grown = np.sqrt((1 + max(self.slack, SAME)) * self.model.J)
         return np.asarray((grown + np.sqrt(EXACT) * np.array(self._lengths)) ** 2)
 
-    def _solve(self, q: Values, size: float, sign: float, start: Floats) -> Floats | None:
-        """Return the model (p,) of the extreme to which a start leads; q is about ``size``.
+    def holds(self, J: Floats) -> Bools:
+        """Return whether models with objectives J (..., n) are equivalent."""
+        return np.asarray((self.level * (1 + SAME) >= J).all(axis=-1))
+
+    def _solve(
+        self, q: Values, size: float, sign: float, start: Floats
+    ) -> tuple[Floats, float] | None:
+        """Return the model (p,) of the extreme to which a start leads and q, about ``size``, there.
 
         None where that is no equivalent model.
         """
@@ -159,15 +165,15 @@ class Equivalent:
         target = Wrapped(self.problem, self._with(q, size), ("",) * (n + 1))
         w, found = np.append(np.zeros(n), sign), begin(target.evaluate(start))
         rows = np.pad(C, ((0, 0), (0, 1)))
-        best: Floats | None = None
+        best: tuple[Floats, float] | None = None
         for factor in FACTORS:
             programme = achievement(w, rows, d, factor)
             found = solve(target, programme, begin(found.evaluation), _ENOUGH)
             for theta in (found.theta, self._nearest(found.theta)):
-                J = self.problem.evaluate(theta, derivatives=False).J
-                if (self.level * (1 + SAME) >= J).all():
-                    if best is None or sign * q(theta) < sign * q(best):
-                        best = theta
+                if self.holds(self.problem.evaluate(theta, derivatives=False).J):
+                    value = q(theta)
+                    if best is None or sign * value < sign * best[1]:
+                        best = theta, value
                     if theta is found.theta:
                         return best
         return best
@@ -331,7 +337,7 @@ def extreme(
         models, known = Equivalent(problem, problem.evaluate(theta), front.slack, step), theta[:0]
         if front.others is not None:
             known, J = front.others
-            known = known[(models.level * (1 + SAME) >= J).all(axis=1)]
+            known = known[models.holds(J)]
         return sign * models.extreme(q, sign, known)
 
     along = _Along(problem, front, value)

@@ -259,7 +259,7 @@ class Continued:
     def evaluate(
         self, theta: Floats, *, derivatives: bool = True, second: bool = False
     ) -> Evaluation:
-        """Return the objectives at ``theta``; second derivatives of the last one are not known."""
+        """Return the objectives at ``theta``; second derivatives of the last one are left out."""
         problem = self.problem
         try:
             modes, pairs = problem.modes(theta, derivatives=derivatives)
@@ -273,9 +273,8 @@ class Continued:
         J = np.append(known.J, np.nansum(beyond.mac - inside.mac))
         if not derivatives:
             return replace(known, J=J)
-        seen = problem.data, modes.phi, modes.dphi
-        slopes = [mac_slopes(seen[0], x, *seen[1:]) for x in (beyond, inside)]
-        dJ = np.vstack([known.dJ, np.nansum(slopes[0] - slopes[1], axis=0)])
+        there, here = (mac_slopes(problem.data, x, modes.phi, modes.dphi) for x in (beyond, inside))
+        dJ = np.vstack([known.dJ, np.nansum(there - here, axis=0)])
         H = np.concatenate([known.H, np.zeros((1, theta.size, theta.size))])
         return replace(known, J=J, dJ=dJ, H=H, residuals=())
 

@@ -188,8 +188,8 @@ def worked(study: Study, work: Run) -> Dataset:
     refuse_unchanged_groups(problem, file, unchanged)
     weighted = [(each.name, each.of(problem.objectives)) for each in study.weighted]
     of_search: dict[str, Any] = {"seed": seed, "search": study.search, "given": weighted}
-    of_search["least"] = problem.least
-    search = partial(pareto_front, problem, problem.properties, study.pareto, **of_search)
+    of_search |= {"options": study.pareto, "least": problem.least}
+    search = partial(pareto_front, problem, problem.properties, **of_search)
     # What follows from the points of a refined front, snapshots included, is another repetition.
     refined = study.pareto.refined
     again: Executor = work if refined is None else Within(work, ("refined", repr(refined)))

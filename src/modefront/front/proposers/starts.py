@@ -120,10 +120,8 @@ class Starts:
     def unseen(self, state: State) -> float:
         """Return the chance that a start gains at most, of the places that have had some."""
         tried = [x for x in state.places if x.subproblem.key in self.minima]
-        left = [
-            self.of(x).chance(x, state.limits.tolerance) for x in tried if not state.is_settled(x)
-        ]
-        return max(left, default=0.0)
+        left = (x for x in tried if not state.is_settled(x))
+        return max((self.of(x).chance(x, state.limits.tolerance) for x in left), default=0.0)
 
     def of(self, place: Place) -> Minima:
         """Return the minima of a subproblem."""
