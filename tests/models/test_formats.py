@@ -208,7 +208,7 @@ def hostile() -> dict[str, tuple[str, bytes]]:
 
 
 def refused(path: Path, content: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("modefront.work.isolated.available_memory", lambda: 2 * 10**9)
+    monkeypatch.setattr("modefront.work.isolated.available_memory", lambda: 10**9)
     path.write_bytes(content)
     with pytest.raises(mf.InputError) as error:
         read_matrix(path)

@@ -1,7 +1,7 @@
 """Readers of other packages in a process of their own, with limits on time and memory.
 
-It imports what readers need once, and reads one file after another; where one ends it, the next has
-another process. Nothing that comes back is unpickled.
+It imports what readers need once, and reads one file after another; where one ends it or fails, the
+next has another process. Nothing that comes back is unpickled.
 """
 
 import atexit
@@ -113,12 +113,13 @@ class _Server:
                     process.stdin.flush()
                 if line := process.stdout.readline():
                     if error := json.loads(line):
+                        line = ""  # what failed may hold much: the next file has another process
                         raise RuntimeError(error)
                     return
                 status = process.wait()
             finally:
                 timer.cancel()
-                if not line:  # it has ended, or there was an interrupt
+                if not line:  # it has ended or failed, or there was an interrupt
                     self.end()
         if time.monotonic() > late:
             raise RuntimeError(f"nothing within {seconds:.0f} s, after which reading was given up")
