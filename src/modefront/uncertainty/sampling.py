@@ -34,6 +34,7 @@ from modefront.work.task import Executor, Task, seed_sequence
 DRAWS = 200  # effective draws for intervals: the 5 % quantile is known to 0.15 standard deviations
 
 CHAINS, ROUND, LONGEST = 4, 50, 12  # chains, steps of a round, and of all chains over the draws
+INTERVAL = 0.05, 0.95  # ends of intervals, for which the size of a sample is found
 AGREE = 1.05  # deviation of all chains over that within them, from which they do not agree
 ACCEPTED = 0.35  # share of steps nearby that are taken, below which they become shorter
 APART = 1.0  # distance of two models, in standard deviations, below which one leads to the other
@@ -501,8 +502,9 @@ def _drawn(mean: Floats, precision: Floats, rng: np.random.Generator) -> Floats:
 def agreement(x: Floats) -> tuple[Floats, Floats]:
     """Return R-hat and the effective size of chains (chains, steps, p), both (p,).
 
-    Of ranks, or of ranks of the distance from the median, whichever is worse; each chain counts as
-    two halves.
+    R-hat is that of ranks, or of ranks of the distance from the median, whichever is worse; the
+    size is that of ranks, or for one of the ends of an interval, whichever is least. Each chain
+    counts as two halves.
     """
     half = x.shape[1] // 2
     halves = np.concatenate([x[:, :half], x[:, -half:]])
@@ -512,6 +514,8 @@ def agreement(x: Floats) -> tuple[Floats, Floats]:
     places = [np.searchsorted(np.sort(x), [x, np.nextafter(x, np.inf)]) for x in each]
     ranks = (np.sum(places, axis=1).T + 1) / 2  # the mean one of those that are the same
     y = ndtri((ranks - 0.375) / (len(ranks) + 0.25)).reshape(both.shape)
+    below = [halves <= end for end in np.quantile(halves, INTERVAL, axis=(0, 1))]
+    y = np.concatenate([y, *below], axis=2)
     within = y.var(axis=1, ddof=1).mean(axis=0)
     total = within * (half - 1) / half + y.mean(axis=1).var(axis=0, ddof=1)
     centred = y - y.mean(axis=1, keepdims=True)
@@ -523,5 +527,5 @@ def agreement(x: Floats) -> tuple[Floats, Floats]:
     pairs = np.minimum.accumulate(np.where(np.cumprod(pairs > 0, axis=0), pairs, 0.0), axis=0)
     tau = np.maximum(2 * pairs.sum(axis=0) - 1, 1 / np.log10(len(ranks)))
     ratio = np.sqrt(total / np.maximum(within, 1e-300))
-    size = len(ranks) / tau
-    return ratio.reshape(2, -1).max(axis=0), size.reshape(2, -1).min(axis=0)
+    of_ranks, _, *of_ends = (len(ranks) / tau).reshape(4, -1)
+    return ratio.reshape(4, -1)[:2].max(axis=0), np.minimum(of_ranks, np.min(of_ends, axis=0))
