@@ -114,6 +114,34 @@ def test_ends_of_curved_sets_at_bounds_are_found() -> None:
             assert found == pytest.approx(end, rel=1e-3)
 
 
+class Bent:
+    """Residuals of x = theta_1 theta_2, of which one is as at x = 1 again at x = 3."""
+
+    objectives = ("a",)
+    lower, upper, start = np.array([0.1, 0.1]), np.array([10.0, 10.0]), np.ones(2)
+
+    def evaluate(
+        self, theta: Floats, *, derivatives: bool = True, second: bool = False
+    ) -> Evaluation:
+        x = theta[0] * theta[1]
+        r = np.array([(x - 1) * (3 - x) + 1.0, (x - 1) ** 2])
+        dr = np.outer([4 - 2 * x, 2 * (x - 1)], theta[::-1])
+        H, parts = 2 * dr.T @ dr, [Residual(r, dr)]
+        return Evaluation(theta, np.array([r @ r]), 2 * (r @ dr)[None], H[None], residuals=parts)
+
+
+def test_models_that_a_weak_penalty_leads_away_from_are_found_again() -> None:
+    """Of q = x^6 / theta_1 the greatest is at theta_1 = 0.1, x = 1; far more, not as good, at 3."""
+    problem = Bent()
+    start = np.array([[1.0, 1.0]])
+    front = Sampled(start, problem.evaluate(start[0]).J[None], is_open=True)
+
+    def q(theta: Floats) -> float:
+        return float((theta[0] * theta[1]) ** 6 / theta[0])
+
+    assert extreme(problem, front, np.ones(1), q, -1.0, 1e-4) == pytest.approx(10.0, rel=1e-3)
+
+
 class Known:
     """Two groups that know all parameters: the squared distances from two models."""
 

@@ -12,7 +12,8 @@ singular values :math:`U \Sigma V^T` of these derivatives over the ranges of the
 
 or, with a slack s, :math:`J_i(\theta) \le (1 + s) J_i(\theta_P)`. Only derivatives of q along the
 null space :math:`V_0` of the equations count. Solutions at which an objective has grown are left
-out. The constraints are a penalty on the greatest violation, which grows until they are met. Where
+out. The constraints are a penalty on the greatest violation, which grows until they are met: from
+where it has led, or from the start again where no equivalent model is near that. Where
 the bounds to which :math:`V_0 V_0^T e_j` leads promise more, the search goes on from there.
 """
 
@@ -163,15 +164,15 @@ class Equivalent:
             n = self.model.J.size
             C, d = np.vstack([np.zeros(n), np.diag(1 / self.level)]), np.append(0.0, np.ones(n))
         target = Wrapped(self.problem, self._with(q, size), ("",) * (n + 1))
-        w, found = np.append(np.zeros(n), sign), begin(target.evaluate(start))
+        w, at = np.append(np.zeros(n), sign), begin(target.evaluate(start))
         rows = np.pad(C, ((0, 0), (0, 1)))
         best: tuple[Floats, float] | None = None
         for factor in FACTORS:
             programme = achievement(w, rows, d, factor)
-            found = solve(target, programme, begin(found.evaluation), _ENOUGH)
+            found = solve(target, programme, at, _ENOUGH)
             for theta in (found.theta, self._nearest(found.theta)):
                 if self.holds(self.problem.evaluate(theta, derivatives=False).J):
-                    value = q(theta)
+                    value, at = q(theta), begin(found.evaluation)
                     if best is None or sign * value < sign * best[1]:
                         best = theta, value
                     if theta is found.theta:
