@@ -80,7 +80,7 @@ def test_a_bound_holds_a_parameter_where_no_search_beyond_it_converges() -> None
     none, fit = np.zeros((200, 0)), {"misfit": np.ones(1), "nominal_misfit": np.ones(1)}
     fit |= {"lack_of_fit": np.full(1, np.nan)}
     found = Draws(draws, none, none, *np.ones((2, 2)))
-    inference = Inference(found, fit, None, None, np.zeros((0, 1)))
+    inference = Inference(found, fit, None, None, None, np.zeros((0, 1)))
     values = {
         "kind": (("point",), np.array(["most-probable"])),
         "theta": (("point", "parameter"), np.array([[0.5, 1.0]])),

@@ -282,8 +282,8 @@ def with_intervals(data: ArrayDataset, noise: NoiseModel, inference: Inference) 
 
     A quantile is such that the next draw is below it with its probability. Of draws that do not
     settle, and of a model that lacks something or cannot be used, none is called determined, nor is
-    a parameter that a bound holds, and not the data. Of one whose bound excludes what fits, these
-    say something.
+    a parameter that a bound holds, and not the data. Of one whose bound excludes what fits or whose
+    prior the data contradict, these say something.
     """
     draws, fit, widths = inference.draws, inference.fit, prior_widths(noise.problem)
     freed, unfixed = inference.freed, inference.unfixed
@@ -297,6 +297,8 @@ def with_intervals(data: ArrayDataset, noise: NoiseModel, inference: Inference) 
     place = np.where(known, 0, np.where(share > OPEN, 2, 1))
     if freed:
         place[excluding(side, theta, fit["misfit"], freed)] = 1
+    if inference.contradicted:
+        place[noise.problem.model.parameters.index(inference.contradicted[0])] = 1
     along = np.full(data["error"].values.shape, np.nan)
     along[front_points(data)] = inference.along
     values = {
@@ -319,5 +321,8 @@ def with_intervals(data: ArrayDataset, noise: NoiseModel, inference: Inference) 
         attributes["freed_less"] = freed.less
     if unfixed is not None:
         attributes["fixed_parameter"], attributes["fixed_value"], values["unfixed_misfit"] = unfixed
+    if inference.contradicted is not None:
+        names = (f"prior_{x}" for x in ("parameter", "value", "away"))
+        attributes |= zip(names, inference.contradicted, strict=True)
     out = data.assign(described(values)).assign_coords({"quantile": QUANTILES})
     return out.assign_attrs(attributes)

@@ -24,7 +24,7 @@ from modefront.models.reduced.model import ReducedModel, SnapshotRequest
 from modefront.optim.problem import DISTINCT, Evaluation, at_bounds
 from modefront.optim.sqp import Options, Solution, begin, solve
 from modefront.residuals.problem import UpdatingProblem
-from modefront.uncertainty.prior import NoiseModel
+from modefront.uncertainty.prior import Distance, NoiseModel
 from modefront.uncertainty.sampling import Draws, draw_models
 from modefront.uncertainty.scatter import Posterior
 from modefront.work.codec import record
@@ -132,6 +132,9 @@ class Inference:
     # name and value of the fixed parameter that is wrong, and the errors (n,) over those expected
     # with it free; None where none lowers them beyond chance
     unfixed: tuple[str, float, Floats] | None
+    # name and value of the parameter whose prior the data contradict most, and its distance from
+    # the nominal one in standard deviations, without this prior; None where chance explains it
+    contradicted: tuple[str, float, float] | None
     along: Floats  # (models, n) errors of the models of the front over those expected
 
     def gaussian(self, span: Floats) -> Posterior:
@@ -164,7 +167,8 @@ def infer(
     rounds = 1 if np.any(refused(fit["misfit"], fit["nominal_misfit"])) else None
     draws = draw_models(noise, [x.theta for x in maxima], count, seed, work, rounds)
     fit["mac_mode"] = maxima[0].evaluation.quantities["mac_mode"]
-    return Inference(draws, fit, free, unfixed(noise, theta, fit["misfit"], work), along)
+    wrong = unfixed(noise, theta, fit["misfit"], work), contradicted(noise, theta, work)
+    return Inference(draws, fit, free, *wrong, along)
 
 
 def _misfits(noise: NoiseModel, thetas: Sequence[Floats]) -> Floats:
@@ -264,6 +268,27 @@ def unfixed(
         return None
     names = problem.with_free([name]).model.parameters
     return name, float(best.theta[names.index(name)]), best.misfit
+
+
+def contradicted(
+    noise: NoiseModel, theta: Floats, work: Executor
+) -> tuple[str, float, float] | None:
+    """Return the prior that data contradict most at a most probable model, as in `Inference`.
+
+    Of a right one the distance from the nominal value takes no more of -2 ln p, with what the data
+    gain without it, than by chance: the sum is the square of a normal variable.
+    """
+    priors, distance = noise.problem.priors, Distance(noise.problem, 0.0).residuals
+    known = [j for j, prior in enumerate(priors) if prior]
+    others = [(*priors[:j], None, *priors[j + 1 :]) for j in known]
+    models = [replace(noise, problem=replace(noise.problem, priors=x)) for x in others]
+    tasks = [Task(("most-probable", "prior", k), _lower, (x, theta)) for k, x in enumerate(models)]
+    of = zip(known, work.run(tasks), strict=True)
+    found = [(x.less + distance(theta)[0][j] ** 2, j, x.theta) for j, x in of if x is not None]
+    less, j, there = max(found, key=lambda x: x[0], default=(0.0, 0, theta))
+    if less < chdtri(1, CHANCE / max(len(known), 1)):
+        return None
+    return noise.problem.model.parameters[j], float(there[j]), float(abs(distance(there)[0][j]))
 
 
 def _placed(noise: NoiseModel, known: Sequence[str], theta: Floats) -> Floats:
