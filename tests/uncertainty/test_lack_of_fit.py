@@ -13,7 +13,14 @@ from modefront.datasets import Array, ArrayDataset
 from modefront.front.point import Kind
 from modefront.reports.page import _noise
 from modefront.results.verdict import _front
-from modefront.uncertainty.inference import CHANCE, _fit, _misfits, lack_of_fit, most_probable
+from modefront.uncertainty.inference import (
+    CHANCE,
+    _fit,
+    _misfits,
+    lack_of_fit,
+    most_probable,
+    too_small,
+)
 from modefront.uncertainty.noise import Uncertainty
 from modefront.uncertainty.prior import NoisePrior
 from modefront.work.task import IMMEDIATE
@@ -62,6 +69,16 @@ def test_of_right_models_the_probabilities_are_uniform() -> None:
 def test_a_spring_that_the_model_lacks_shows_in_several_sets_only() -> None:
     assert (lack(problem_of(1, SPRING)) < CHANCE).any()
     assert np.isnan(lack(problem_of(1, SPRING, sets=1))).all()
+
+
+@pytest.mark.parametrize(("times", "small"), [(1, False), (20, True)])
+def test_errors_that_are_far_below_those_expected_are_no_chance(times: int, small: bool) -> None:
+    problem = problem_of(1, 0.0, sets=1)
+    noise = NoisePrior(frequency=0.005 * times, shape=0.02 * times).of(problem, None)
+    assert noise is not None
+    theta = most_probable(problem, noise, [problem.start], IMMEDIATE)[0].theta
+    found = too_small(noise, noise.problem.evaluate(theta)) < CHANCE
+    assert found.tolist() == [small, small]
 
 
 def test_copies_of_a_data_set_say_nothing_of_errors() -> None:

@@ -85,7 +85,10 @@ def _use(data: Dataset) -> str:
     size = enumeration([f"{misfit[i]:.2g} ({groups[i]})" for i in worst], SHOWN)
     use = _say("use", reference=data.attrs["reference"], errors=size)
     lacks = (misfit > LARGE) | (data["lack_of_fit"].values < CHANCE)
-    return f"{use} {_say('lacks')}" if lacks.any() else use
+    small = groups[data["too_small"].values < CHANCE].tolist()
+    more = [_say("lacks")] if lacks.any() else []
+    more += [_say("too-small", groups=enumeration(small, SHOWN))] if small else []
+    return " ".join([use, *more])
 
 
 def _at_bounds(data: Dataset) -> Iterator[str]:

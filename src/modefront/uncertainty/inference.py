@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from scipy.special import chdtri, fdtrc
+from scipy.special import chdtri, fdtr, fdtrc
 
 from modefront._typing import Bools, Floats, Ints
 from modefront.errors import ModelError
@@ -24,7 +24,7 @@ from modefront.models.reduced.model import ReducedModel, SnapshotRequest
 from modefront.optim.problem import DISTINCT, Evaluation, at_bounds
 from modefront.optim.sqp import Options, Solution, begin, solve
 from modefront.residuals.problem import UpdatingProblem
-from modefront.uncertainty.prior import Distance, NoiseModel
+from modefront.uncertainty.prior import PULL, Distance, NoiseModel
 from modefront.uncertainty.sampling import Draws, draw_models
 from modefront.uncertainty.scatter import Posterior
 from modefront.work.codec import record
@@ -186,6 +186,7 @@ def _fit(noise: NoiseModel, theta: Floats) -> dict[str, Any]:
         "misfit": misfit,
         "nominal_misfit": before,
         "lack_of_fit": lack_of_fit(noise, found),
+        "too_small": too_small(noise, found),
         "scatter_share": np.divide(noise.S, found.J, out=np.zeros(found.J.size), where=found.J > 0),
         **candidates(noise, found),
     }
@@ -196,11 +197,24 @@ def lack_of_fit(noise: NoiseModel, found: Evaluation) -> Floats:
 
     That is a test of lack of fit; NaN where less than one error is left open, and of one set.
     """
-    C, w = np.linalg.inv(noise.precision(found)), noise.logs.gradient(found.J)
-    left = noise.a - w * np.einsum("ijk,kj->i", found.gauss_newton, C) / 2
+    left, mean = _left_open(noise, found)
     with np.errstate(invalid="ignore", divide="ignore"):
-        ratio = (found.J - noise.S) / left / (noise.S / noise.d)
-    return left.size * np.where(left >= 1, fdtrc(left, noise.d, np.maximum(ratio, 0.0)), np.nan)
+        ratio = mean / (noise.S / noise.d)
+    return left.size * np.where(left >= 1, fdtrc(left, noise.d, ratio), np.nan)
+
+
+def too_small(noise: NoiseModel, found: Evaluation) -> Floats:
+    """Return the probability (n,), times n, of errors as small as these beside those expected."""
+    left, mean = _left_open(noise, found)
+    tail = fdtr(left, noise.weight, mean / noise.level)
+    return left.size * np.where(left >= 1, tail, np.nan)
+
+
+def _left_open(noise: NoiseModel, found: Evaluation) -> tuple[Floats, Floats]:
+    """Return how many errors (n,) a most probable model does not fit, and their mean squares."""
+    C, w = np.linalg.inv(noise.precision(found, PULL)), noise.logs.gradient(found.J)
+    left = noise.a - w * np.einsum("ijk,kj->i", found.gauss_newton, C) / 2
+    return left, np.maximum(found.J - noise.S, 0.0) / np.maximum(left, 1.0)
 
 
 def freed(noise: NoiseModel, theta: Floats) -> Freed | None:

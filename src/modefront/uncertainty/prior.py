@@ -119,10 +119,13 @@ class NoiseModel:
         names = (*self.problem.objectives, "distance from the nominal model")
         return Wrapped(self.problem, Distance(self.problem, PULL).evaluation, names)
 
-    def precision(self, evaluation: Evaluation) -> Floats:
-        """Return Gauss-Newton's matrix (p, p) of -ln p; a uniform prior has its variance."""
+    def precision(self, evaluation: Evaluation, weight: float = 12.0) -> Floats:
+        """Return Gauss-Newton's matrix (p, p) of -ln p; a uniform prior has its variance.
+
+        With another ``weight`` it is the normal one of that `Distance`.
+        """
         w = self.logs.gradient(evaluation.J)
-        dr = Distance(self.problem, 12.0).residuals(evaluation.theta)[1]
+        dr = Distance(self.problem, weight).residuals(evaluation.theta)[1]
         return np.tensordot(w, evaluation.gauss_newton, axes=1) / 2 + np.diag(dr**2)
 
     def over_expected(self, J: Floats) -> Floats:
