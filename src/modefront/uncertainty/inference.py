@@ -41,6 +41,8 @@ TRIED = 3  # fixed parameters that are tried at most
 GAIN = 0.1  # share of its errors that a group loses without bounds that are worth widening
 
 
+SHAPES = ("shape", "subspace")  # kinds of residuals that have what a further sensor measures
+
 STARTS = 12  # searches at most, from the most probable of the known models
 APART = 0.02  # distance of two starts, over the ranges of the parameters, below which one is enough
 
@@ -395,7 +397,7 @@ def _further(noise: NoiseModel, evaluation: Evaluation) -> Iterator[tuple[float,
 
     top = np.nanmax(np.abs(data.shape), axis=2, initial=0.0, keepdims=True)
     seen_at = np.where(np.isfinite(data.shape), top, 0.0)
-    of_shape = size(("shape", "subspace"), data.shape_std, seen_at)
+    of_shape = size(SHAPES, data.shape_std, seen_at)
     of_frequency = size(["frequency"], data.frequency_std, data.frequency)
 
     def shape(q: int, sensors: Bools) -> tuple[Floats, Floats]:
@@ -403,8 +405,10 @@ def _further(noise: NoiseModel, evaluation: Evaluation) -> Iterator[tuple[float,
         unit = of_shape / np.abs(modes.phi[:, q]).max()
         return unit * modes.phi[sensors, q], unit * modes.dphi[sensors, q]
 
-    measured: Bools = np.asarray(np.isfinite(data.shape).any(axis=0) & (of_shape > 0))
-    seen: Bools = np.asarray(measured.any(axis=0))
+    parts_of = (x for group in problem.groups for x in group.positions(data))
+    used = [r for kind, some in parts_of if kind.name in SHAPES for r in some]
+    measured: Bools = np.asarray(np.isfinite(data.shape).any(axis=0))
+    seen: Bools = np.asarray(measured.any(axis=0) & (of_shape > 0))
     for q in sorted(set(range(modes.lam.size)) - set(pairs.index.tolist())):
         parts, f = [], modes.frequency[q]
         if of_frequency and f > 0:
@@ -416,7 +420,8 @@ def _further(noise: NoiseModel, evaluation: Evaluation) -> Iterator[tuple[float,
             yield float(f), "", np.vstack(parts)
     for s in np.flatnonzero(~seen).tolist():
         rows = []
-        for others, q in zip(measured, pairs.index.tolist(), strict=True):
+        for r in sorted(set(used)):
+            others, q = measured[r], pairs.index[r]
             if modes.phi[others, q].any():
                 (x,), (dx,) = shape(q, np.arange(seen.size) == s)
                 chi, dchi = shape(q, others)
