@@ -17,9 +17,8 @@ from modefront.uncertainty.inference import (
     CHANCE,
     _fit,
     _misfits,
-    lack_of_fit,
+    chances,
     most_probable,
-    too_small,
 )
 from modefront.uncertainty.noise import Uncertainty
 from modefront.uncertainty.prior import NoisePrior
@@ -57,7 +56,7 @@ def lack(problem: mf.UpdatingProblem) -> Floats:
     noise = NoisePrior().of(problem, Uncertainty().of(problem.data))
     assert noise is not None
     theta = most_probable(problem, noise, [problem.start], IMMEDIATE)[0].theta
-    return lack_of_fit(noise, noise.problem.evaluate(theta))
+    return chances(noise, noise.problem.evaluate(theta))[0]
 
 
 def test_of_right_models_the_probabilities_are_uniform() -> None:
@@ -77,7 +76,7 @@ def test_errors_that_are_far_below_those_expected_are_no_chance(times: int, smal
     noise = NoisePrior(frequency=0.005 * times, shape=0.02 * times).of(problem, None)
     assert noise is not None
     theta = most_probable(problem, noise, [problem.start], IMMEDIATE)[0].theta
-    found = too_small(noise, noise.problem.evaluate(theta)) < CHANCE
+    found = chances(noise, noise.problem.evaluate(theta))[1] < CHANCE
     assert found.tolist() == [small, small]
 
 

@@ -297,8 +297,10 @@ def with_intervals(data: ArrayDataset, noise: NoiseModel, inference: Inference) 
     place = np.where(known, 0, np.where(share > OPEN, 2, 1))
     if freed:
         place[excluding(side, theta, fit["misfit"], freed)] = 1
-    if inference.contradicted:
-        place[noise.problem.model.parameters.index(inference.contradicted[0])] = 1
+    attributes: dict[str, Any] = {"assumed": noise.assumed, "settled": int(settled)}
+    if wrong := inference.contradicted:
+        place[noise.problem.model.parameters.index(wrong[0])] = 1
+        attributes |= zip(("prior_parameter", "prior_value", "prior_away"), wrong, strict=True)
     along = np.full(data["error"].values.shape, np.nan)
     along[front_points(data)] = inference.along
     values = {
@@ -315,14 +317,10 @@ def with_intervals(data: ArrayDataset, noise: NoiseModel, inference: Inference) 
         "posterior_frequency_std": summary(draws.frequency)[1],
         "posterior_mac_std": summary(draws.mac)[1],
     }
-    attributes: dict[str, Any] = {"assumed": noise.assumed, "settled": int(settled)}
     if freed is not None:
         values |= {"freed_theta": freed.theta, "freed_misfit": freed.misfit}
         attributes["freed_less"] = freed.less
     if unfixed is not None:
         attributes["fixed_parameter"], attributes["fixed_value"], values["unfixed_misfit"] = unfixed
-    if inference.contradicted is not None:
-        names = (f"prior_{x}" for x in ("parameter", "value", "away"))
-        attributes |= zip(names, inference.contradicted, strict=True)
     out = data.assign(described(values)).assign_coords({"quantile": QUANTILES})
     return out.assign_attrs(attributes)

@@ -184,39 +184,31 @@ def _fit(noise: NoiseModel, theta: Floats) -> dict[str, Any]:
     problem = noise.problem
     found, nominal = problem.evaluate(theta), problem.evaluate(problem.start, derivatives=False)
     misfit, before = (noise.over_expected(x.J) for x in (found, nominal))
+    lacks, less = chances(noise, found)
     return {
         "misfit": misfit,
         "nominal_misfit": before,
-        "lack_of_fit": lack_of_fit(noise, found),
-        "too_small": too_small(noise, found),
+        "lack_of_fit": lacks,
+        "too_small": less,
         "scatter_share": np.divide(noise.S, found.J, out=np.zeros(found.J.size), where=found.J > 0),
         **candidates(noise, found),
     }
 
 
-def lack_of_fit(noise: NoiseModel, found: Evaluation) -> Floats:
-    """Return the probability (n,), times n, of errors beside the scatter of the data sets.
+def chances(noise: NoiseModel, found: Evaluation) -> tuple[Floats, Floats]:
+    """Return probabilities (n,), times n, of the errors of a most probable model.
 
-    That is a test of lack of fit; NaN where less than one error is left open, and of one set.
+    Those of errors as large beside the scatter of the data sets, a test of lack of fit, NaN of one
+    set; and of errors as small beside those expected. NaN where less than one error is left open.
     """
-    left, mean = _left_open(noise, found)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        ratio = mean / (noise.S / noise.d)
-    return left.size * np.where(left >= 1, fdtrc(left, noise.d, ratio), np.nan)
-
-
-def too_small(noise: NoiseModel, found: Evaluation) -> Floats:
-    """Return the probability (n,), times n, of errors as small as these beside those expected."""
-    left, mean = _left_open(noise, found)
-    tail = fdtr(left, noise.weight, mean / noise.level)
-    return left.size * np.where(left >= 1, tail, np.nan)
-
-
-def _left_open(noise: NoiseModel, found: Evaluation) -> tuple[Floats, Floats]:
-    """Return how many errors (n,) a most probable model does not fit, and their mean squares."""
     C, w = np.linalg.inv(noise.precision(found, PULL)), noise.logs.gradient(found.J)
     left = noise.a - w * np.einsum("ijk,kj->i", found.gauss_newton, C) / 2
-    return left, np.maximum(found.J - noise.S, 0.0) / np.maximum(left, 1.0)
+    mean = np.maximum(found.J - noise.S, 0.0) / np.maximum(left, 1.0)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        large = fdtrc(left, noise.d, mean / (noise.S / noise.d))
+    small = fdtr(left, noise.weight, mean / noise.level)
+    lacks, less = left.size * np.where(left >= 1, [large, small], np.nan)
+    return lacks, less
 
 
 def freed(noise: NoiseModel, theta: Floats) -> Freed | None:
@@ -296,11 +288,13 @@ def contradicted(
     """
     priors, distance = noise.problem.priors, Distance(noise.problem, 0.0).residuals
     known = [j for j, prior in enumerate(priors) if prior]
-    others = [(*priors[:j], None, *priors[j + 1 :]) for j in known]
-    models = [replace(noise, problem=replace(noise.problem, priors=x)) for x in others]
-    tasks = [Task(("most-probable", "prior", k), _lower, (x, theta)) for k, x in enumerate(models)]
-    of = zip(known, work.run(tasks), strict=True)
-    found = [(x.less + distance(theta)[0][j] ** 2, j, x.theta) for j, x in of if x is not None]
+    tasks = list[Task[Freed | None]]()
+    for j in known:
+        problem = replace(noise.problem, priors=(*priors[:j], None, *priors[j + 1 :]))
+        of = replace(noise, problem=problem), theta
+        tasks.append(Task(("most-probable", "prior", j), _lower, of))
+    of_each = zip(known, work.run(tasks), strict=True)
+    found = [(x.less + distance(theta)[0][j] ** 2, j, x.theta) for j, x in of_each if x is not None]
     less, j, there = max(found, key=lambda x: x[0], default=(0.0, 0, theta))
     if less < chdtri(1, CHANCE / max(len(known), 1)):
         return None

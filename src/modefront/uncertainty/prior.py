@@ -120,10 +120,7 @@ class NoiseModel:
         return Wrapped(self.problem, Distance(self.problem, PULL).evaluation, names)
 
     def precision(self, evaluation: Evaluation, weight: float = 12.0) -> Floats:
-        """Return Gauss-Newton's matrix (p, p) of -ln p; a uniform prior has its variance.
-
-        With another ``weight`` it is the normal one of that `Distance`.
-        """
+        """Return Gauss-Newton's matrix (p, p) of -ln p, with the variance of a uniform prior."""
         w = self.logs.gradient(evaluation.J)
         dr = Distance(self.problem, weight).residuals(evaluation.theta)[1]
         return np.tensordot(w, evaluation.gauss_newton, axes=1) / 2 + np.diag(dr**2)
@@ -223,8 +220,9 @@ class Standardised:
     def evaluate(
         self, theta: Floats, *, derivatives: bool = True, second: bool = False
     ) -> Evaluation:
-        """Return the objectives at z (p,), with the derivatives that residuals take."""
+        """Return the objectives at z (p,) within the bounds, with derivatives of residuals."""
         del second
+        theta = np.clip(theta, self.lower, self.upper)
         parameters, slope = self.theta(theta)
         found = self.problem.evaluate(parameters, derivatives=derivatives)
         J = np.append(found.J, theta @ theta)
