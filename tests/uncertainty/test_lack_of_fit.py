@@ -70,14 +70,14 @@ def test_a_spring_that_the_model_lacks_shows_in_several_sets_only() -> None:
     assert np.isnan(lack(problem_of(1, SPRING, sets=1))).all()
 
 
-@pytest.mark.parametrize(("times", "small"), [(1, False), (20, True)])
-def test_errors_that_are_far_below_those_expected_are_no_chance(times: int, small: bool) -> None:
+@pytest.mark.parametrize(("times", "weight"), [(1, 4.0), (20, 4.0), (20, 1e-3)])
+def test_errors_that_are_far_below_those_expected_are_no_chance(times: int, weight: float) -> None:
     problem = problem_of(1, 0.0, sets=1)
-    noise = NoisePrior(frequency=0.005 * times, shape=0.02 * times).of(problem, None)
+    noise = NoisePrior(0.005 * times, 0.02 * times, weight).of(problem, None)
     assert noise is not None
     theta = most_probable(problem, noise, [problem.start], IMMEDIATE)[0].theta
     found = chances(noise, noise.problem.evaluate(theta))[1] < CHANCE
-    assert found.tolist() == [small, small]
+    assert found.tolist() == [times * weight > 4] * 2
 
 
 def test_copies_of_a_data_set_say_nothing_of_errors() -> None:

@@ -199,7 +199,8 @@ def chances(noise: NoiseModel, found: Evaluation) -> tuple[Floats, Floats]:
     """Return probabilities (n,), times n, of the errors of a most probable model.
 
     Those of errors as large beside the scatter of the data sets, a test of lack of fit, NaN of one
-    set; and of errors as small beside those expected. NaN where less than one error is left open.
+    set; and of errors as small beside those expected. NaN of less than one error, or an expectation
+    that is worth less.
     """
     C, w = np.linalg.inv(noise.precision(found, PULL)), noise.logs.gradient(found.J)
     left = noise.a - w * np.einsum("ijk,kj->i", found.gauss_newton, C) / 2
@@ -207,8 +208,8 @@ def chances(noise: NoiseModel, found: Evaluation) -> tuple[Floats, Floats]:
     with np.errstate(invalid="ignore", divide="ignore"):
         large = fdtrc(left, noise.d, mean / (noise.S / noise.d))
     small = fdtr(left, noise.weight, mean / noise.level)
-    lacks, less = left.size * np.where(left >= 1, [large, small], np.nan)
-    return lacks, less
+    n, least = left.size, np.minimum(left, noise.weight)
+    return n * np.where(left >= 1, large, np.nan), n * np.where(least >= 1, small, np.nan)
 
 
 def freed(noise: NoiseModel, theta: Floats) -> Freed | None:
