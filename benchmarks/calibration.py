@@ -53,7 +53,7 @@ from modefront.optim.problem import with_second_order
 from modefront.optim.scalarisation import LogSum
 from modefront.optim.sqp import TIGHT, begin, solve
 from modefront.results.assemble import DETERMINED
-from modefront.uncertainty.inference import CHANCE, lack_of_fit, most_probable, refused
+from modefront.uncertainty.inference import CHANCE, chances, most_probable, refused
 from modefront.uncertainty.prior import NoisePrior
 from modefront.uncertainty.sampling import DRAWS, draw_models
 from modefront.uncertainty.scatter import laplace
@@ -301,7 +301,7 @@ def judged(seed: int, draws: int, test: Test, predict: bool = False) -> list[Ver
     )
     if np.any(refused(misfit, nominal)):
         return []
-    right = not (lack_of_fit(noise, found) < CHANCE).any()
+    right = not (chances(noise, found)[0] < CHANCE).any()
     drawn = draw_models(noise, [x.theta for x in maxima], draws, seed, IMMEDIATE)
     samples = drawn.theta
     low, middle, high = np.quantile(samples, (0.05, 0.5, 0.95), axis=0, method="weibull")

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from modefront._typing import Floats
+from modefront.models.parameters import Prior
 from modefront.optim.problem import Evaluation, Residual, infeasible
 from modefront.work.task import Costs, spend
 
@@ -28,11 +29,7 @@ class Squares:
     objectives: tuple[str, ...]
     exact: bool = True
     model: None = None
-
-    @property
-    def priors(self) -> tuple[()]:
-        """None of any parameter."""
-        return ()
+    priors: tuple[Prior, ...] = ()
 
     def evaluate(
         self, theta: Floats, *, derivatives: bool = True, second: bool = False

@@ -61,13 +61,15 @@ def lines_of_page(name: str, text: str) -> None:
         assert tomllib.loads(each)
 
 
-def test_an_interval_has_nine_of_ten_draws_and_the_bound_that_is_most_probable() -> None:
-    draws = np.random.default_rng(0).exponential(size=(4000, 3)) * [1, -1, 1]
-    found = intervals(draws, np.array([-1, 1, 0]), np.array([[0.0, 9], [-9, 0], [0, 9]]))
+def test_an_interval_has_nine_of_ten_draws_and_the_most_probable_value() -> None:
+    draws = np.random.default_rng(0).exponential(size=(4000, 5)) * [1, -1, 1, 1, -1]
+    best = np.array([0, 0, 0.5, 0.02, -4.0])
+    found = intervals(draws, best)
     inside = (draws >= found[:, 0]) & (draws <= found[:, 2])
-    assert inside.mean(axis=0) == pytest.approx([0.9] * 3, abs=1e-3)
+    assert inside.mean(axis=0) == pytest.approx([0.9] * 5, abs=1e-3)
     assert found[0, 0] == 0 == found[1, 2]
     assert found[2, 0] == pytest.approx(-np.log(0.95), rel=0.2), "equal tails"
+    assert found[3:, 0] == pytest.approx(best[3:], rel=0.02)
 
 
 def test_a_bound_holds_a_parameter_where_no_search_beyond_it_converges() -> None:
@@ -78,7 +80,7 @@ def test_a_bound_holds_a_parameter_where_no_search_beyond_it_converges() -> None
     none, fit = np.zeros((200, 0)), {"misfit": np.ones(1), "nominal_misfit": np.ones(1)}
     fit |= {"lack_of_fit": np.full(1, np.nan)}
     found = Draws(draws, none, none, *np.ones((2, 2)))
-    inference = Inference(found, fit, None, None, np.zeros((0, 1)))
+    inference = Inference(found, fit, None, None, None, np.zeros((0, 1)))
     values = {
         "kind": (("point",), np.array(["most-probable"])),
         "theta": (("point", "parameter"), np.array([[0.5, 1.0]])),

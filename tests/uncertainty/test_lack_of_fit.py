@@ -13,7 +13,13 @@ from modefront.datasets import Array, ArrayDataset
 from modefront.front.point import Kind
 from modefront.reports.page import _noise
 from modefront.results.verdict import _front
-from modefront.uncertainty.inference import CHANCE, _fit, _misfits, lack_of_fit, most_probable
+from modefront.uncertainty.inference import (
+    CHANCE,
+    _fit,
+    _misfits,
+    chances,
+    most_probable,
+)
 from modefront.uncertainty.noise import Uncertainty
 from modefront.uncertainty.prior import NoisePrior
 from modefront.work.task import IMMEDIATE
@@ -50,7 +56,7 @@ def lack(problem: mf.UpdatingProblem) -> Floats:
     noise = NoisePrior().of(problem, Uncertainty().of(problem.data))
     assert noise is not None
     theta = most_probable(problem, noise, [problem.start], IMMEDIATE)[0].theta
-    return lack_of_fit(noise, noise.problem.evaluate(theta))
+    return chances(noise, noise.problem.evaluate(theta))[0]
 
 
 def test_of_right_models_the_probabilities_are_uniform() -> None:
@@ -62,6 +68,16 @@ def test_of_right_models_the_probabilities_are_uniform() -> None:
 def test_a_spring_that_the_model_lacks_shows_in_several_sets_only() -> None:
     assert (lack(problem_of(1, SPRING)) < CHANCE).any()
     assert np.isnan(lack(problem_of(1, SPRING, sets=1))).all()
+
+
+@pytest.mark.parametrize(("times", "weight"), [(1, 4.0), (20, 4.0), (20, 1e-3)])
+def test_errors_that_are_far_below_those_expected_are_no_chance(times: int, weight: float) -> None:
+    problem = problem_of(1, 0.0, sets=1)
+    noise = NoisePrior(0.005 * times, 0.02 * times, weight).of(problem, None)
+    assert noise is not None
+    theta = most_probable(problem, noise, [problem.start], IMMEDIATE)[0].theta
+    found = chances(noise, noise.problem.evaluate(theta))[1] < CHANCE
+    assert found.tolist() == [times * weight > 4] * 2
 
 
 def test_copies_of_a_data_set_say_nothing_of_errors() -> None:

@@ -1,5 +1,6 @@
 """Gains of further measurements against problems that have them."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -14,20 +15,23 @@ NAMES = ("k1", "k2", "k3")
 THETA = np.array([0.9, 1.2, 1.05])
 
 
-def noise_of(modes: int, sensors: int, priors: bool = False) -> NoiseModel:
+def noise_of(
+    modes: int, sensors: int, priors: bool = False, shape: Sequence[int] = (1, 2, 3)
+) -> NoiseModel:
     """Return a chain whose lowest modes at some of its sensors are measured without error."""
     model = mf.chain(NAMES, [20.0] * 3, [80e3] * 3, stiffness_parameters=NAMES)
     true = model.modes(THETA, 3)
-    shape = true.phi.T[:modes, :sensors]
+    phi = true.phi.T[:modes, :sensors]
     top = np.abs(true.phi.T[:modes]).max(axis=1)[:, None]
     data = mf.modal_data(
         true.frequency[:modes],
-        shape,
+        phi,
         model.sensors[:sensors],
         frequency_std=0.01 * true.frequency[:modes],
-        shape_std=np.broadcast_to(0.02 * top, shape.shape),
+        shape_std=np.broadcast_to(0.02 * top, phi.shape),
     )
-    groups = [mf.Group("frequencies", frequency="all"), mf.Group("shapes", shape="all")]
+    shapes = mf.Group("shapes", shape=shape[:modes])
+    groups = [mf.Group("frequencies", frequency="all"), shapes]
     prior = mf.Prior("lognormal", 0.3) if priors else None
     parameters = [mf.Parameter(x, nominal=1.0, bounds=(0.3, 3.0), prior=prior) for x in NAMES]
     problem = mf.updating_problem(model, data, groups, parameters=parameters)
@@ -57,8 +61,9 @@ def test_a_further_mode_narrows_as_if_it_had_been_measured(priors: bool) -> None
     assert further["candidate_gain"][0] == pytest.approx(expected, rel=1e-6)
 
 
-def test_a_further_sensor_narrows_as_if_it_had_been_there() -> None:
-    before, after = noise_of(3, 2), noise_of(3, 3)
+@pytest.mark.parametrize("shape", [(1, 2, 3), (2,)])
+def test_a_further_sensor_narrows_as_if_it_had_been_there(shape: Sequence[int]) -> None:
+    before, after = noise_of(3, 2, shape=shape), noise_of(3, 3, shape=shape)
     found = before.problem.evaluate(THETA)
     further = candidates(before, found)
     assert further["candidate_sensor"] == [before.problem.model.sensors[2]]

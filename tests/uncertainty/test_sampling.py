@@ -163,6 +163,21 @@ def test_draws_at_bounds_are_those_of_the_truncated_gaussian(mean: float) -> Non
     assert scipy.stats.kstest(draws[:, 1], scipy.stats.uniform.cdf).pvalue > 0.01
 
 
+def test_draws_are_as_far_from_a_prior_as_the_data_are() -> None:
+    """One linear residual of known variance: a Gaussian, 14 standard deviations from nominal."""
+
+    def line(theta: Floats) -> Residuals:
+        return [((theta - 0.75) / 0.01, np.array([[1 / 0.01]]))]
+
+    noise = replace(noise_of(line, [0], [1], [1.0]), weight=1e8)
+    noise = replace(noise, problem=replace(noise.problem, priors=(Prior("normal", 0.02),)))
+    best = maximum(noise, np.array([0.4])).theta
+    assert best == pytest.approx([0.68], rel=1e-6)
+    draws = draw_models(noise, [best], 300, 5, IMMEDIATE).theta
+    exact = scipy.stats.norm(0.68, 0.01 / np.sqrt(1.25))
+    assert scipy.stats.kstest(draws[:, 0], exact.cdf).pvalue > 0.01
+
+
 @dataclass
 class Noting(Executor):
     """An executor that notes how many tasks are still expected, beside those that are done."""

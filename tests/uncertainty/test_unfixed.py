@@ -1,11 +1,19 @@
-"""Fixed parameters and bounds that are wrong are named, and those that are right are not."""
+"""Fixed parameters, bounds and priors that are wrong are named, and right ones are not."""
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import modefront as mf
 from modefront._typing import Floats
-from modefront.uncertainty.inference import Freed, excluding, most_probable, unfixed
+from modefront.uncertainty.inference import (
+    Freed,
+    contradicted,
+    excluding,
+    most_probable,
+    unfixed,
+)
 from modefront.uncertainty.prior import NoisePrior
 from modefront.work.task import IMMEDIATE, counted
 
@@ -62,6 +70,22 @@ def test_the_verdict_says_what_to_write() -> None:
     assert said.startswith("With k2 = 1.")
     assert said.endswith("write fixed = false in its [[parameter]].")
     assert results.attrs["fixed_parameter"] == "k2"
+
+
+@pytest.mark.parametrize(("std", "away"), [(0.1, 5.0), (0.4, 0.0)])
+def test_a_prior_that_the_data_contradict_is_named(std: float, away: float) -> None:
+    problem = problem_of(np.array([0.9, 1.0, 1.5, 1.0, 1.2]), 1)
+    priors = (None, mf.Prior("normal", std), mf.Prior("lognormal", 0.3))
+    noise = NoisePrior().of(replace(problem, priors=priors), None)
+    assert noise is not None
+    theta = most_probable(problem, noise, [problem.start], IMMEDIATE)[0].theta
+    found = contradicted(noise, theta, IMMEDIATE)
+    if not away:
+        assert found is None
+        return
+    assert found is not None
+    assert (found[0], found[2]) == ("k3", pytest.approx(away, rel=0.1))
+    assert found[1] == pytest.approx(1.5, rel=0.05)
 
 
 def test_a_problem_without_fixed_parameters_has_no_other_model() -> None:

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from modefront._typing import Bools, Floats, Ints
+from modefront._typing import Bools, Floats
 from modefront.analysis.certified import certificate_values
 from modefront.analysis.front import FrontAnalysis
 from modefront.datasets import ArrayDataset
@@ -263,17 +263,18 @@ def _replicates(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis)
     }
 
 
-def intervals(theta: Floats, side: Ints, bounds: Floats) -> Floats:
+def intervals(theta: Floats, best: Floats) -> Floats:
     """Return 90 % intervals, with the medians between their ends, (p, 3), of draws (draws, p).
 
-    They have equal tails. Where the most probable model is at a bound, at -1 or 1 as ``side`` (p,)
-    says, they begin there, ``bounds`` (p, 2), and have one tail: they contain what they are of.
+    They have equal tails. Where the most probable model ``best`` (p,) is in one of these, as at a
+    bound, they begin there, and that tail is less: they contain what they are of.
     """
-    tails = (QUANTILES[0], 2 * QUANTILES[0], QUANTILES[1], 1 - 2 * QUANTILES[0], QUANTILES[2])
-    low, below, median, above, high = np.quantile(theta, tails, axis=0, method="weibull")
-    low, high = np.where(side > 0, below, low), np.where(side < 0, above, high)
-    low, high = np.where(side < 0, bounds[:, 0], low), np.where(side > 0, bounds[:, 1], high)
-    return np.column_stack([low, median, high])
+    out, (low, middle, high) = np.empty((best.size, 3)), QUANTILES
+    for row, x, value in zip(out, theta.T, best.tolist(), strict=True):
+        tail = max(min(low, (x < value).mean()), 2 * low - (x > value).mean())
+        row[:] = np.quantile(x, (tail, middle, tail + high - low), method="weibull")
+        row[0], row[2] = min(row[0], value), max(row[2], value)
+    return out
 
 
 def with_intervals(data: ArrayDataset, noise: NoiseModel, inference: Inference) -> ArrayDataset:
@@ -281,8 +282,8 @@ def with_intervals(data: ArrayDataset, noise: NoiseModel, inference: Inference) 
 
     A quantile is such that the next draw is below it with its probability. Of draws that do not
     settle, and of a model that lacks something or cannot be used, none is called determined, nor is
-    a parameter that a bound holds, and not the data. Of one whose bound excludes what fits, these
-    say something.
+    a parameter that a bound holds, and not the data. Of one whose bound excludes what fits or whose
+    prior the data contradict, these say something.
     """
     draws, fit, widths = inference.draws, inference.fit, prior_widths(noise.problem)
     freed, unfixed = inference.freed, inference.unfixed
@@ -290,12 +291,16 @@ def with_intervals(data: ArrayDataset, noise: NoiseModel, inference: Inference) 
     best = data["kind"].values == Kind.MOST_PROBABLE.value
     (side,), (theta,) = (data[name].values[best] for name in ("at_bound", "theta"))
     held = side * (freed.theta - theta) > 0 if freed else side != 0
-    interval = intervals(draws.theta, side, data["bounds"].values)
+    interval = intervals(draws.theta, theta)
     share = (interval[:, 2] - interval[:, 0]) / widths
     known = (share < DETERMINED) & ~held & (settled and not (fit["lack_of_fit"] < CHANCE).any())
     place = np.where(known, 0, np.where(share > OPEN, 2, 1))
     if freed:
         place[excluding(side, theta, fit["misfit"], freed)] = 1
+    attributes: dict[str, Any] = {"assumed": noise.assumed, "settled": int(settled)}
+    if wrong := inference.contradicted:
+        place[noise.problem.model.parameters.index(wrong[0])] = 1
+        attributes |= zip(("prior_parameter", "prior_value", "prior_away"), wrong, strict=True)
     along = np.full(data["error"].values.shape, np.nan)
     along[front_points(data)] = inference.along
     values = {
@@ -312,7 +317,6 @@ def with_intervals(data: ArrayDataset, noise: NoiseModel, inference: Inference) 
         "posterior_frequency_std": summary(draws.frequency)[1],
         "posterior_mac_std": summary(draws.mac)[1],
     }
-    attributes: dict[str, Any] = {"assumed": noise.assumed, "settled": int(settled)}
     if freed is not None:
         values |= {"freed_theta": freed.theta, "freed_misfit": freed.misfit}
         attributes["freed_less"] = freed.less

@@ -45,7 +45,7 @@ def with_verdict(data: Dataset, spare: Sequence[str] = ()) -> Dataset:
     of_far = zip(groups[far], misfit[far], strict=True)
     why = [_say("far", group=group, misfit=value) for group, value in of_far]
     why += [_say("worse", group=group) for group in groups[worse]]
-    said = [*_at_bounds(data), *_fixed(data)]
+    said = [*_at_bounds(data), *_wrong(data)]
     if assumed := data.attrs.get("assumed"):
         said.append(_say("assumed", assumed=assumed))
     said += _pairs(data)
@@ -85,7 +85,10 @@ def _use(data: Dataset) -> str:
     size = enumeration([f"{misfit[i]:.2g} ({groups[i]})" for i in worst], SHOWN)
     use = _say("use", reference=data.attrs["reference"], errors=size)
     lacks = (misfit > LARGE) | (data["lack_of_fit"].values < CHANCE)
-    return f"{use} {_say('lacks')}" if lacks.any() else use
+    small = groups[data["too_small"].values < CHANCE].tolist()
+    more = [_say("lacks")] if lacks.any() else []
+    more += [_say("too-small", groups=enumeration(small, SHOWN))] if small else []
+    return " ".join([use, *more])
 
 
 def _at_bounds(data: Dataset) -> Iterator[str]:
@@ -106,14 +109,17 @@ def _at_bounds(data: Dataset) -> Iterator[str]:
         yield f"{wrong}."
 
 
-def _fixed(data: Dataset) -> Iterator[str]:
-    if "fixed_parameter" not in data.attrs:
-        return
-    before, after = data["misfit"].values, data["unfixed_misfit"].values
-    i = int(np.argmax(before - after))
-    of_group = {"group": data["group"].values[i], "after": after[i], "before": before[i]}
-    name, value = (data.attrs[f"fixed_{x}"] for x in ("parameter", "value"))
-    yield _say("wrong-fixed", name=name, value=value, **of_group)
+def _wrong(data: Dataset) -> Iterator[str]:
+    """Yield which prior and which fixed value the data contradict."""
+    if "prior_parameter" in data.attrs:
+        names = ("parameter", "value", "away")
+        yield _say("wrong-prior", **{name: data.attrs[f"prior_{name}"] for name in names})
+    if "fixed_parameter" in data.attrs:
+        before, after = data["misfit"].values, data["unfixed_misfit"].values
+        i = int(np.argmax(before - after))
+        errors = {"group": data["group"].values[i], "after": after[i], "before": before[i]}
+        name, value = (data.attrs[f"fixed_{x}"] for x in ("parameter", "value"))
+        yield _say("wrong-fixed", name=name, value=value, **errors)
 
 
 def _pairs(data: Dataset) -> Iterator[str]:

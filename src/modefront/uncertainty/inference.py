@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from scipy.special import chdtri, fdtrc
+from scipy.special import chdtri, fdtr, fdtrc
 
 from modefront._typing import Bools, Floats, Ints
 from modefront.errors import ModelError
@@ -24,7 +24,7 @@ from modefront.models.reduced.model import ReducedModel, SnapshotRequest
 from modefront.optim.problem import DISTINCT, Evaluation, at_bounds
 from modefront.optim.sqp import Options, Solution, begin, solve
 from modefront.residuals.problem import UpdatingProblem
-from modefront.uncertainty.prior import NoiseModel
+from modefront.uncertainty.prior import PULL, Distance, NoiseModel
 from modefront.uncertainty.sampling import Draws, draw_models
 from modefront.uncertainty.scatter import Posterior
 from modefront.work.codec import record
@@ -40,6 +40,8 @@ TRIED = 3  # fixed parameters that are tried at most
 
 GAIN = 0.1  # share of its errors that a group loses without bounds that are worth widening
 
+
+SHAPES = ("shape", "subspace")  # kinds of residuals that have what a further sensor measures
 
 STARTS = 12  # searches at most, from the most probable of the known models
 APART = 0.02  # distance of two starts, over the ranges of the parameters, below which one is enough
@@ -132,6 +134,9 @@ class Inference:
     # name and value of the fixed parameter that is wrong, and the errors (n,) over those expected
     # with it free; None where none lowers them beyond chance
     unfixed: tuple[str, float, Floats] | None
+    # name and value of the parameter whose prior the data contradict most, and its distance from
+    # the nominal one in standard deviations, without this prior; None where chance explains it
+    contradicted: tuple[str, float, float] | None
     along: Floats  # (models, n) errors of the models of the front over those expected
 
     def gaussian(self, span: Floats) -> Posterior:
@@ -164,7 +169,8 @@ def infer(
     rounds = 1 if np.any(refused(fit["misfit"], fit["nominal_misfit"])) else None
     draws = draw_models(noise, [x.theta for x in maxima], count, seed, work, rounds)
     fit["mac_mode"] = maxima[0].evaluation.quantities["mac_mode"]
-    return Inference(draws, fit, free, unfixed(noise, theta, fit["misfit"], work), along)
+    wrong = unfixed(noise, theta, fit["misfit"], work), contradicted(noise, theta, work)
+    return Inference(draws, fit, free, *wrong, along)
 
 
 def _misfits(noise: NoiseModel, thetas: Sequence[Floats]) -> Floats:
@@ -178,25 +184,32 @@ def _fit(noise: NoiseModel, theta: Floats) -> dict[str, Any]:
     problem = noise.problem
     found, nominal = problem.evaluate(theta), problem.evaluate(problem.start, derivatives=False)
     misfit, before = (noise.over_expected(x.J) for x in (found, nominal))
+    lacks, less = chances(noise, found)
     return {
         "misfit": misfit,
         "nominal_misfit": before,
-        "lack_of_fit": lack_of_fit(noise, found),
+        "lack_of_fit": lacks,
+        "too_small": less,
         "scatter_share": np.divide(noise.S, found.J, out=np.zeros(found.J.size), where=found.J > 0),
         **candidates(noise, found),
     }
 
 
-def lack_of_fit(noise: NoiseModel, found: Evaluation) -> Floats:
-    """Return the probability (n,), times n, of errors beside the scatter of the data sets.
+def chances(noise: NoiseModel, found: Evaluation) -> tuple[Floats, Floats]:
+    """Return probabilities (n,), times n, of the errors of a most probable model.
 
-    That is a test of lack of fit; NaN where less than one error is left open, and of one set.
+    Those of errors as large beside the scatter of the data sets, a test of lack of fit, NaN of one
+    set; and of errors as small beside those expected. NaN of less than one error, or an expectation
+    that is worth less.
     """
-    C, w = np.linalg.inv(noise.precision(found)), noise.logs.gradient(found.J)
+    C, w = np.linalg.inv(noise.precision(found, PULL)), noise.logs.gradient(found.J)
     left = noise.a - w * np.einsum("ijk,kj->i", found.gauss_newton, C) / 2
+    mean = np.maximum(found.J - noise.S, 0.0) / np.maximum(left, 1.0)
     with np.errstate(invalid="ignore", divide="ignore"):
-        ratio = (found.J - noise.S) / left / (noise.S / noise.d)
-    return left.size * np.where(left >= 1, fdtrc(left, noise.d, np.maximum(ratio, 0.0)), np.nan)
+        large = fdtrc(left, noise.d, mean / (noise.S / noise.d))
+    small = fdtr(left, noise.weight, mean / noise.level)
+    n, least = left.size, np.minimum(left, noise.weight)
+    return n * np.where(left >= 1, large, np.nan), n * np.where(least >= 1, small, np.nan)
 
 
 def freed(noise: NoiseModel, theta: Floats) -> Freed | None:
@@ -264,6 +277,29 @@ def unfixed(
         return None
     names = problem.with_free([name]).model.parameters
     return name, float(best.theta[names.index(name)]), best.misfit
+
+
+def contradicted(
+    noise: NoiseModel, theta: Floats, work: Executor
+) -> tuple[str, float, float] | None:
+    """Return the prior that data contradict most at a most probable model, as in `Inference`.
+
+    Of a right one the distance from the nominal value takes no more of -2 ln p, with what the data
+    gain without it, than by chance: the sum is the square of a normal variable.
+    """
+    priors, distance = noise.problem.priors, Distance(noise.problem, 0.0).residuals
+    known = [j for j, prior in enumerate(priors) if prior]
+    tasks = list[Task[Freed | None]]()
+    for j in known:
+        problem = replace(noise.problem, priors=(*priors[:j], None, *priors[j + 1 :]))
+        of = replace(noise, problem=problem), theta
+        tasks.append(Task(("most-probable", "prior", j), _lower, of))
+    of_each = zip(known, work.run(tasks), strict=True)
+    found = [(x.less + distance(theta)[0][j] ** 2, j, x.theta) for j, x in of_each if x is not None]
+    less, j, there = max(found, key=lambda x: x[0], default=(0.0, 0, theta))
+    if less < chdtri(1, CHANCE / max(len(known), 1)):
+        return None
+    return noise.problem.model.parameters[j], float(there[j]), float(abs(distance(there)[0][j]))
 
 
 def _placed(noise: NoiseModel, known: Sequence[str], theta: Floats) -> Floats:
@@ -356,7 +392,7 @@ def _further(noise: NoiseModel, evaluation: Evaluation) -> Iterator[tuple[float,
 
     top = np.nanmax(np.abs(data.shape), axis=2, initial=0.0, keepdims=True)
     seen_at = np.where(np.isfinite(data.shape), top, 0.0)
-    of_shape = size(("shape", "subspace"), data.shape_std, seen_at)
+    of_shape = size(SHAPES, data.shape_std, seen_at)
     of_frequency = size(["frequency"], data.frequency_std, data.frequency)
 
     def shape(q: int, sensors: Bools) -> tuple[Floats, Floats]:
@@ -364,8 +400,10 @@ def _further(noise: NoiseModel, evaluation: Evaluation) -> Iterator[tuple[float,
         unit = of_shape / np.abs(modes.phi[:, q]).max()
         return unit * modes.phi[sensors, q], unit * modes.dphi[sensors, q]
 
-    measured: Bools = np.asarray(np.isfinite(data.shape).any(axis=0) & (of_shape > 0))
-    seen: Bools = np.asarray(measured.any(axis=0))
+    parts_of = (x for group in problem.groups for x in group.positions(data))
+    used = [r for kind, some in parts_of if kind.name in SHAPES for r in some]
+    measured: Bools = np.asarray(np.isfinite(data.shape).any(axis=0))
+    seen: Bools = np.asarray(measured.any(axis=0) & (of_shape > 0))
     for q in sorted(set(range(modes.lam.size)) - set(pairs.index.tolist())):
         parts, f = [], modes.frequency[q]
         if of_frequency and f > 0:
@@ -377,7 +415,8 @@ def _further(noise: NoiseModel, evaluation: Evaluation) -> Iterator[tuple[float,
             yield float(f), "", np.vstack(parts)
     for s in np.flatnonzero(~seen).tolist():
         rows = []
-        for others, q in zip(measured, pairs.index.tolist(), strict=True):
+        for r in sorted(set(used)):
+            others, q = measured[r], pairs.index[r]
             if modes.phi[others, q].any():
                 (x,), (dx,) = shape(q, np.arange(seen.size) == s)
                 chi, dchi = shape(q, others)

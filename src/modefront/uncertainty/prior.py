@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from typing import Annotated
 
 import numpy as np
-from scipy.special import ndtr, ndtri
+from scipy.special import log_ndtr, ndtr, ndtri, ndtri_exp
 
 from modefront._typing import Floats
 from modefront.data.modal import ModalData
@@ -22,6 +22,7 @@ from modefront.residuals.base import NEGLIGIBLE
 from modefront.residuals.groups import Group, faults
 from modefront.residuals.problem import UpdatingProblem
 from modefront.residuals.shape import without_negligible
+from modefront.rounding import TINY
 from modefront.uncertainty.noise import Source
 
 PULL = 1e-3  # weight of the distance from the nominal model: a normal prior of thirty ranges
@@ -34,7 +35,7 @@ SHAPE = number("a share above 0 and below 1, such as 0.03 for 3 %", above=0, bel
 
 NINETY = 1.6449  # half the 90 % interval of a normal distribution, over its standard deviation
 
-FARTHEST = 7.0  # distance from the median of a prior, in standard deviations, at most
+FARTHEST = 7.0  # distance from the median of a uniform prior, or from bounds of others, at most
 
 
 @dataclass(frozen=True)
@@ -118,10 +119,10 @@ class NoiseModel:
         names = (*self.problem.objectives, "distance from the nominal model")
         return Wrapped(self.problem, Distance(self.problem, PULL).evaluation, names)
 
-    def precision(self, evaluation: Evaluation) -> Floats:
-        """Return Gauss-Newton's matrix (p, p) of -ln p; a uniform prior has its variance."""
+    def precision(self, evaluation: Evaluation, weight: float = 12.0) -> Floats:
+        """Return Gauss-Newton's matrix (p, p) of -ln p, with the variance of a uniform prior."""
         w = self.logs.gradient(evaluation.J)
-        dr = Distance(self.problem, 12.0).residuals(evaluation.theta)[1]
+        dr = Distance(self.problem, weight).residuals(evaluation.theta)[1]
         return np.tensordot(w, evaluation.gauss_newton, axes=1) / 2 + np.diag(dr**2)
 
     def over_expected(self, J: Floats) -> Floats:
@@ -175,13 +176,15 @@ class Standardised:
         problem = self.problem
         self.objectives = (*problem.objectives, "prior")
         self.start = np.zeros(problem.start.size)
-        self.lower, self.upper = self.start - FARTHEST, self.start + FARTHEST
         known = [(j, prior) for j, prior in enumerate(problem.priors) if prior]
         self.known = np.array([j for j, _ in known], dtype=int)
         self.std = np.array([prior.std for _, prior in known])
         self.log = np.array([prior.kind == "lognormal" for _, prior in known], dtype=bool)
         self.below, self.above = (self._units(x) for x in (problem.lower, problem.upper))
         self.share = ndtr(self.above) - ndtr(self.below)
+        self.lower, self.upper = self.start - FARTHEST, self.start + FARTHEST
+        self.lower[self.known] += np.minimum(self.below, 0.0)
+        self.upper[self.known] += np.maximum(self.above, 0.0)
 
     def theta(self, z: Floats) -> tuple[Floats, Floats]:
         """Return the parameters (p,) of z (p,) and their derivatives."""
@@ -190,9 +193,9 @@ class Standardised:
         theta = np.where(z < 0, lower + span * ndtr(z), upper - span * ndtr(-z))
         slope = span * density
         if known.size:
-            left = ndtr(self.below) + self.share * ndtr(z[known])
-            right = ndtr(-self.above) + self.share * ndtr(-z[known])
-            x = np.where(left < right, ndtri(left), -ndtri(right))
+            ends = ((self.below, z[known]), (-self.above, -z[known]))
+            tails = [np.logaddexp(log_ndtr(a), np.log(self.share) + log_ndtr(b)) for a, b in ends]
+            x = np.where(tails[0] < tails[1], ndtri_exp(tails[0]), -ndtri_exp(tails[1]))
             nominal, away = self.problem.start[known], self.std * x
             grown = np.exp(np.where(self.log, away, 0.0))  # not of a deviation in any unit
             theta[known] = np.where(self.log, nominal * grown, nominal + away)
@@ -212,14 +215,14 @@ class Standardised:
         """Return distances from nominal values, or of their logarithms, over deviations."""
         theta, nominal = theta[self.known], self.problem.start[self.known]
         ratio = np.divide(theta, nominal, out=np.ones(theta.size), where=self.log)
-        with np.errstate(divide="ignore"):
-            return np.where(self.log, np.log(np.maximum(ratio, 0.0)), theta - nominal) / self.std
+        return np.where(self.log, np.log(np.maximum(ratio, TINY)), theta - nominal) / self.std
 
     def evaluate(
         self, theta: Floats, *, derivatives: bool = True, second: bool = False
     ) -> Evaluation:
-        """Return the objectives at z (p,), with the derivatives that residuals take."""
+        """Return the objectives at z (p,) within the bounds, with derivatives of residuals."""
         del second
+        theta = np.clip(theta, self.lower, self.upper)
         parameters, slope = self.theta(theta)
         found = self.problem.evaluate(parameters, derivatives=derivatives)
         J = np.append(found.J, theta @ theta)

@@ -224,8 +224,7 @@ class Peak:
         inverse, step, bend = self.first(here, L @ u[:p] - self.forward(here)[0])
         share = 1 / max(1.0, np.abs(step).max())
         for _ in range(STEPS):
-            z = np.clip(here.z + share * step + share**2 * bend, -FARTHEST, FARTHEST)
-            there = Model(target.evaluate(z), here.s)
+            there = Model(target.evaluate(here.z + share * step + share**2 * bend), here.s)
             if there.found.feasible:
                 F, slope = self.forward(there)
                 missing = L @ u[:p] - F
@@ -398,7 +397,7 @@ def find_peak(noise: NoiseModel, theta: Floats) -> tuple[Evaluation, Floats]:
     L = np.linalg.cholesky(peak.precision(peak.expected))
     changes = np.zeros((at.theta.size, *peak.squares.shape))  # axes, n, p, p
     for change, axis in zip(changes, np.linalg.inv(L), strict=True):
-        found = target.evaluate(np.clip(at.theta + BENT * axis, -FARTHEST, FARTHEST))
+        found = target.evaluate(at.theta + BENT * axis)
         if found.feasible:
             pairs = zip(at.residuals[:-1], found.residuals[:-1], strict=True)
             change[:] = [x.dr.T @ (y.dr - x.dr) / BENT for x, y in pairs]
@@ -482,7 +481,7 @@ class Sampler:
         """Return the model after a step of the stochastic Newton method, and its probability."""
         mean, precision = here.newton(b)
         z = _drawn(mean, precision, rng)
-        new = Model(self.target.evaluate(np.clip(z, -FARTHEST, FARTHEST)), here.s)
+        new = Model(self.target.evaluate(z), here.s)
         if not new.found.feasible:
             return here, 0.0
         back, behind = new.newton(b)
