@@ -57,7 +57,7 @@ def test_the_gaussian_of_draws_has_the_covariance_of_parameters_in_any_units() -
     unit, spread = np.array([2e11, 1.0, 1e-12]), [[0.01, 0, 0], [0.03, 0.04, 0], [0, 0, 0.02]]
     z = np.random.default_rng(0).normal(size=(500, 3)) @ np.transpose(spread)
     draws = Draws(unit * (1 + z), *np.zeros((2, 500, 0)), *np.ones((2, 3)))
-    found = Inference(draws, {}, None, None, np.zeros((0, 1))).gaussian(1.5 * unit)
+    found = Inference(draws, {}, None, None, None, np.zeros((0, 1))).gaussian(1.5 * unit)
     assert found.covariance / np.outer(unit, unit) == pytest.approx(np.cov(z.T), rel=1e-9)
 
 
