@@ -55,8 +55,8 @@ class UpdatingProblem(Shown):
     lower, upper, start : (parameters,) bounds and nominal values
     pairing : how measured modes and model modes are paired
     priors : what is expected of each parameter; none of any unless given
-    whole : the model as a function of its fixed parameters too, and all of these; None where none
-        is fixed
+    whole : the model as a function of its fixed and tied parameters too, and all of these; None
+        where all are free
     likelihood : function of the objectives that is least with the pairs, instead of those that the
         MAC says; None for these
     """
@@ -321,7 +321,7 @@ def updating_problem(
     """
     data = data.at(model.sensors)
     given = in_order(parameters or parameters_of(bounds or {}, nominal or {}), model.parameters)
-    whole = (model, tuple(given)) if any(each.fixed for each in given) else None
+    whole = None if all(each.free for each in given) else (model, tuple(given))
     model, chosen = of_free(model, given)
     limits, pairing = _limits(chosen), pairing or Pairing()
     if pairing.spare is None and pairing.method != "order" and isinstance(model, MatrixModel):
