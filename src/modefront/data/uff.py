@@ -335,9 +335,8 @@ class NodalModes:
         matched = re.fullmatch(r"([+-]?)([0-9]{1,9}) ?([+-]?)(R?[XYZ])", name.upper())
         if not matched or int(matched[2]) not in self.nodes:
             return None
-        direction = np.zeros(6)
         sign = -1.0 if (matched[1] == "-") != (matched[3] == "-") else 1.0
-        direction[NAMES.index(matched[4])] = sign
+        direction = sign * (np.array(NAMES) == matched[4])
         return int(np.flatnonzero(self.nodes == int(matched[2]))[0]), direction
 
 

@@ -102,8 +102,7 @@ class Lexicographic:
         Each but the first ones is solved for from the limit that those before it tell, as exactly
         as the share of the others asks for.
         """
-        spent, ahead, path, others = 0, start, list[Floats](), self.others
-        limits = list[Evaluation]()
+        spent, ahead, path, limits = 0, start, list[Floats](), list[Evaluation]()
         coarse: Solution | None = None
         passed = np.zeros((0, 3)) if known is None or known.path is None else known.path
         while True:
@@ -111,7 +110,8 @@ class Lexicographic:
             fine = solve(problem, self.programme(epsilon), ahead, enough)
             spent += fine.evaluations
             # what is minimised is exact to its own tolerance, the others in it to the root of that
-            path.append(np.array([epsilon, self.programme(epsilon).value(fine.J), others @ fine.J]))
+            rest = self.others @ fine.J
+            path.append(np.array([epsilon, self.programme(epsilon).value(fine.J), rest]))
             apart = np.abs(passed - path[-1]) / np.maximum(path[-1], np.finfo(float).tiny)
             if known and (apart <= [TIE, TIE, DISTINCT]).all(axis=1).any():
                 return replace(known, evaluations=spent)
