@@ -99,9 +99,8 @@ class UpdatingProblem(Shown):
         A reduced model has a basis of its own, in which there is nothing so far.
         """
         assert self.whole is not None, "no parameter is fixed"
-        model, given = self.whole
-        given = tuple(replace(x, fixed=x.fixed and x.name not in names) for x in given)
-        model, chosen = of_free(model, given)
+        given = tuple(replace(x, fixed=x.fixed and x.name not in names) for x in self.whole[1])
+        model, chosen = of_free(self.whole[0], given)
         if isinstance(self.model, ReducedModel):
             reduction = Reduction(self.model.tolerance, self.model.memory)
             model = reduction.of(model, self.data, self.pairing, chosen)

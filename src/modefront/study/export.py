@@ -209,11 +209,8 @@ def _write(model: ReportedModel, study: Path, folder: Path, modes: int, warning:
     changes = read_changes(known) if known.is_file() else []
     lines = [f"updated values, model '{model.label}'", *[warning] * bool(warning)]
     for name, value in values.items():
-        said = [
-            f"  {change.file}, line {change.line}:\n  {change.updated(value).strip()}"
-            for change in changes
-            if change.parameter == name
-        ]
+        own = [x for x in changes if x.parameter == name]
+        said = [f"  {x.file}, line {x.line}:\n  {x.updated(value).strip()}" for x in own]
         said = said or ["  a factor of what was changed for this parameter"]
         lines += ["", f"{name} = {value:.9g}", *said]
     write_text(folder / "deck.txt", "\n".join(lines) + "\n")
