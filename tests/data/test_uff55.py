@@ -79,6 +79,17 @@ def test_complex_modes_of_several_sets_are_read_as_they_were_written(tmp_path: P
     assert x / z == pytest.approx(-0.5, rel=1e-4)
 
 
+def test_setups_without_names_may_have_other_nodes_and_more_modes(tmp_path: Path) -> None:
+    files = [lines_of(count=count) for count in (2, 3)]
+    second = "".join(f"{n:10d}" for n in (4, 1, 2))
+    more = [x.replace(second, f"{second[:20]}{3:10d}") for x in files[1][len(files[1]) // 2 :]]
+    path = tmp_path / "a.uff"
+    path.write_text("\n".join([*files[0], *files[1], *more]) + "\n")
+    modes = read_uff55(path)
+    assert (modes.data.sets, modes.data.modes) == (("1", "2"), (1, 2, 3))
+    assert np.isfinite(modes.data.frequency).tolist() == [[True, True, False], [True] * 3]
+
+
 def test_a_sensor_without_node_takes_none_that_another_has(tmp_path: Path) -> None:
     shape = np.array([1.0, -0.5, 0.25], complex)
     write_uff55(tmp_path / "a.uff", ["a"], [{1: (complex(-0.3, 25.0), shape)}], ["2X", "top", "1X"])

@@ -151,7 +151,7 @@ def test_long_lists_are_cut() -> None:
 
 def test_what_is_hardly_determined_is_said() -> None:
     text = said(mf.Group("data", shape="all"), decompose(np.diag([1.0, 1e-3])), "ab")
-    assert text == "group data determines 2 of 2 combinations of parameters, and say little about b"
+    assert text == "group data determines 2 of 2 combinations of parameters, but hardly b"
 
 
 def test_the_collinearity_index_of_known_angles() -> None:

@@ -8,8 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from problems import Derivatives, Known, box, circles, many_minima, valley
 
+import modefront as mf
 from modefront._typing import Floats
-from modefront.optim.lexicographic import Lexicographic
+from modefront.optim.lexicographic import TIE, Lexicographic
 from modefront.optim.problem import Evaluation, Residual
 from modefront.optim.sqp import begin
 
@@ -133,3 +134,18 @@ def test_one_objective_alone_has_its_minimum() -> None:
     start = begin(problem.evaluate(np.array([1.0, -1.0])))
     best = Lexicographic(0, np.ones(1)).solve(problem, start)
     assert best.theta == pytest.approx([0.0, 0.0], abs=1e-7)
+
+
+def test_an_edge_of_shapes_that_a_scale_leaves_open_does_not_depend_on_sizes() -> None:
+    """Where shares of the others are small, rounding moves the limits of the path."""
+    names, rng = ["a", "a", "b", "b", "c", "c"], np.random.default_rng(0)
+    model = mf.chain(["a", "b", "c"], [10.0] * 6, [1e5] * 6, stiffness_parameters=names)
+    true = model.modes(np.array([0.8, 1.1, 1.3]), 5)
+    f = true.frequency * (1 + 0.002 * rng.standard_normal(5))
+    data = mf.modal_data(f, true.phi.T + 0.002 * rng.standard_normal((5, 6)), model.sensors)
+    groups = [mf.Group("f", frequency="all"), mf.Group("s", shape="all")]
+    given = [mf.Parameter(name, 1.0, (0.5, 2.0)) for name in model.parameters]
+    problem = mf.updating_problem(model, data, groups, parameters=given)
+    start = begin(problem.evaluate(problem.start))
+    ends = [Lexicographic(1, np.array(x)).solve(problem, start) for x in ([0.005, 2], [1e-5, 0.01])]
+    assert ends[0].J[0] == pytest.approx(ends[1].J[0], rel=TIE)

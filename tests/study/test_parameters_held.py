@@ -62,8 +62,11 @@ def test_others_are_found_where_one_is_fixed_and_one_tied() -> None:
     results = solved(3, parameter("k1"), fixed, parameter("k3"))
     assert results.dataset["parameter"].values.tolist() == ["k1", "k3"]
     assert results.reference.theta == pytest.approx({"k1": 1.2, "k3": 1.1}, abs=1e-3)
+    assert results.reference.parameters == {**results.reference.theta, "k2": 0.9}
     tied = solved(3, parameter("k1"), parameter("k2", tie="k1"), parameter("k3"), weight=0)
     assert tied.dataset["parameter"].values.tolist() == ["k1", "k3"]
+    values = tied.reference.parameters
+    assert values == {**tied.reference.theta, "k2": values["k1"]}
 
 
 @pytest.mark.slow(3)

@@ -335,9 +335,8 @@ class NodalModes:
         matched = re.fullmatch(r"([+-]?)([0-9]{1,9}) ?([+-]?)(R?[XYZ])", name.upper())
         if not matched or int(matched[2]) not in self.nodes:
             return None
-        direction = np.zeros(6)
         sign = -1.0 if (matched[1] == "-") != (matched[3] == "-") else 1.0
-        direction[NAMES.index(matched[4])] = sign
+        direction = sign * (np.array(NAMES) == matched[4])
         return int(np.flatnonzero(self.nodes == int(matched[2]))[0]), direction
 
 
@@ -485,7 +484,7 @@ def _assembled(
     systems: Mapping[int, System],
 ) -> NodalModes:
     """Return all modes as arrays; modes of the same number are those of a further data set."""
-    placed: dict[tuple[str, int], _Mode] = {}
+    placed, nodes_of = dict[tuple[str, int], _Mode](), dict[str, Ints]()
     for position, row in enumerate(rows):
         number = row.number or position + 1
         names = [row.set] if row.set else [str(k) for k in range(1, len(rows) + 1)]
@@ -493,9 +492,10 @@ def _assembled(
         if not free:
             expected = "each mode of a data set once"
             raise wrong(file, expected, f"mode {number} of {row.set} again", row.place)
-        placed[free[0], number] = row
-        _check_nodes(file, row, next(x for (name, _), x in placed.items() if name == free[0]).nodes)
-    sets = tuple(dict.fromkeys(name for name, _ in placed))
+        its = (x for x in free if x in nodes_of and not np.setxor1d(nodes_of[x], row.nodes).size)
+        placed[name := next(its, free[0]), number] = row
+        _check_nodes(file, row, nodes_of.setdefault(name, row.nodes))
+    sets = tuple(nodes_of)
     modes = tuple(sorted({number for _, number in placed}))
     nodes = np.unique(np.concatenate([row.nodes for row in rows]))
     frequency, damping = np.full((2, len(sets), len(modes)), np.nan)

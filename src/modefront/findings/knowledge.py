@@ -61,7 +61,7 @@ def summaries(problem: UpdatingProblem, of: Determination, where: str = "") -> I
         rank = sum(x.share > NONE for x in combinations)
         text = " that have an effect" if of.idle else ""
         if hardly := [in_words(x, names) for x in combinations[::-1] if NONE < x.share < WEAK]:
-            text += f", and say little about {_listed(list(dict.fromkeys(hardly)))}"
+            text += f", but hardly {_listed(list(dict.fromkeys(hardly)))}"
         if rank < p:
             free = _listed(free_in_words(combinations, names, of.scale, of.idle))
             text += f"; {free}: no {noun} changes"

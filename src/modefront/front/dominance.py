@@ -23,7 +23,7 @@ def nondominated(J: Floats, tolerance: float = TIE, scale: Floats | None = None)
 
     A row dominates another one if it is nowhere greater and somewhere less. So that two results of
     the same optimum do not dominate each other by rounding, gains below ``tolerance`` times the
-    range of an objective are none, and losses up to it neither where the gain is 1e7 times as
+    range of an objective are none, and losses up to it neither where the gain is 1e9 times as
     great: next to an edge the loss in its own objective is small, but real. Rows that are not
     finite are dominated. ``scale`` (n,) are the ranges; that of the rows unless they are given.
 

@@ -102,7 +102,7 @@ class Lexicographic:
         Each but the first ones is solved for from the limit that those before it tell, as exactly
         as the share of the others asks for.
         """
-        spent, ahead, path, others = 0, start, list[Floats](), self.others
+        spent, ahead, path, limits = 0, start, list[Floats](), list[Evaluation]()
         coarse: Solution | None = None
         passed = np.zeros((0, 3)) if known is None or known.path is None else known.path
         while True:
@@ -110,7 +110,8 @@ class Lexicographic:
             fine = solve(problem, self.programme(epsilon), ahead, enough)
             spent += fine.evaluations
             # what is minimised is exact to its own tolerance, the others in it to the root of that
-            path.append(np.array([epsilon, self.programme(epsilon).value(fine.J), others @ fine.J]))
+            rest = self.others @ fine.J
+            path.append(np.array([epsilon, self.programme(epsilon).value(fine.J), rest]))
             apart = np.abs(passed - path[-1]) / np.maximum(path[-1], np.finfo(float).tiny)
             if known and (apart <= [TIE, TIE, DISTINCT]).all(axis=1).any():
                 return replace(known, evaluations=spent)
@@ -120,9 +121,11 @@ class Lexicographic:
                 theta = fine.theta + (fine.theta - coarse.theta) / (RATIO - 1)
                 limit = problem.evaluate(np.clip(theta, problem.lower, problem.upper), second=True)
                 spent += 1
+                limits.append(limit)
                 if not limit.feasible or epsilon <= EXACT or self._equal(limit.J, ahead.J):
-                    closer = limit.feasible and limit.J[self.objective] <= fine.J[self.objective]
-                    best = limit if closer else fine.evaluation
+                    # of the last ones rounding may leave less than of those before them
+                    ends = (x for x in (*limits, fine.evaluation) if x.feasible)
+                    best = min(ends, key=lambda x: float(x.J[self.objective]))
                     return replace(fine, evaluation=best, evaluations=spent, path=np.array(path))
                 ahead = replace(fine, evaluation=limit)
             coarse, epsilon = fine, epsilon / RATIO

@@ -55,8 +55,8 @@ class UpdatingProblem(Shown):
     lower, upper, start : (parameters,) bounds and nominal values
     pairing : how measured modes and model modes are paired
     priors : what is expected of each parameter; none of any unless given
-    whole : the model as a function of its fixed parameters too, and all of these; None where none
-        is fixed
+    whole : the model as a function of its fixed and tied parameters too, and all of these; None
+        where all are free
     likelihood : function of the objectives that is least with the pairs, instead of those that the
         MAC says; None for these
     """
@@ -99,9 +99,8 @@ class UpdatingProblem(Shown):
         A reduced model has a basis of its own, in which there is nothing so far.
         """
         assert self.whole is not None, "no parameter is fixed"
-        model, given = self.whole
-        given = tuple(replace(x, fixed=x.fixed and x.name not in names) for x in given)
-        model, chosen = of_free(model, given)
+        given = tuple(replace(x, fixed=x.fixed and x.name not in names) for x in self.whole[1])
+        model, chosen = of_free(self.whole[0], given)
         if isinstance(self.model, ReducedModel):
             reduction = Reduction(self.model.tolerance, self.model.memory)
             model = reduction.of(model, self.data, self.pairing, chosen)
@@ -321,7 +320,7 @@ def updating_problem(
     """
     data = data.at(model.sensors)
     given = in_order(parameters or parameters_of(bounds or {}, nominal or {}), model.parameters)
-    whole = (model, tuple(given)) if any(each.fixed for each in given) else None
+    whole = None if all(each.free for each in given) else (model, tuple(given))
     model, chosen = of_free(model, given)
     limits, pairing = _limits(chosen), pairing or Pairing()
     if pairing.spare is None and pairing.method != "order" and isinstance(model, MatrixModel):

@@ -80,6 +80,12 @@ class ReportedModel(Shown):
     problem: UpdatingProblem | None = None
 
     @property
+    def parameters(self) -> Mapping[str, float]:
+        """Values of all parameters by name, those of fixed and tied ones too."""
+        given = self.problem.whole[1] if self.problem and self.problem.whole else ()
+        return {x.name: self.theta.get(x.tie or x.name, x.nominal) for x in given} or self.theta
+
+    @property
     def stiffness(self) -> scipy.sparse.csc_array:
         """Stiffness matrix K(theta), (N, N); raises ModelError for a model without matrices."""
         return scipy.sparse.csc_array(self._matrices.stiffness.at(self._values))

@@ -114,7 +114,7 @@ def export(
             output.mkdir(parents=True, exist_ok=True)
             with tempfile.TemporaryDirectory(dir=output, prefix=".export-") as unfinished:
                 missing = _write(model, loaded.file, Path(unfinished), count, warning)
-                deck = write_deck(loaded.file.parent, model.theta, Path(unfinished))
+                deck = write_deck(loaded.file.parent, model.parameters, Path(unfinished))
                 missing += [deck] if deck else []
                 files = sorted(Path(unfinished).iterdir())
                 moved = tuple(Path(shutil.move(file, output / file.name)) for file in files)
@@ -169,7 +169,7 @@ def _write(model: ReportedModel, study: Path, folder: Path, modes: int, warning:
 
     Raises ModelError where the model has no matrices or no such modes.
     """
-    values = {name: float(value) for name, value in model.theta.items()}
+    values = {name: float(value) for name, value in model.parameters.items()}
     rows = [(name, repr(value)) for name, value in values.items()]
     write_table(folder / "parameters.csv", [("parameter", "value"), *rows])
     content = {"label": model.label, "kind": model.kind, "parameters": values}
@@ -208,12 +208,9 @@ def _write(model: ReportedModel, study: Path, folder: Path, modes: int, warning:
     known = study.parent / CHANGES
     changes = read_changes(known) if known.is_file() else []
     lines = [f"updated values, model '{model.label}'", *[warning] * bool(warning)]
-    for name, value in model.theta.items():
-        said = [
-            f"  {change.file}, line {change.line}:\n  {change.updated(value).strip()}"
-            for change in changes
-            if change.parameter == name
-        ]
+    for name, value in values.items():
+        own = [x for x in changes if x.parameter == name]
+        said = [f"  {x.file}, line {x.line}:\n  {x.updated(value).strip()}" for x in own]
         said = said or ["  a factor of what was changed for this parameter"]
         lines += ["", f"{name} = {value:.9g}", *said]
     write_text(folder / "deck.txt", "\n".join(lines) + "\n")
