@@ -284,7 +284,7 @@ class Continued:
         slopes = [mac_slopes(problem.data, x, modes.phi, modes.dphi) for x in (inside, *beyond)]
         dJ = np.vstack([known.dJ, *(np.nansum(x - slopes[0], axis=0) for x in slopes[1:])])
         H = np.pad(known.H, ((0, len(beyond)), (0, 0), (0, 0)))
-        return replace(known, J=J, dJ=dJ, H=H, residuals=())
+        return replace(known, J=J, dJ=dJ, H=H, exact=False, residuals=())
 
 
 # 8 arguments: the parts of a problem, the optional ones by keyword.
