@@ -162,6 +162,45 @@ def test_a_jump_is_followed_where_a_problem_knows_it(programme: Scalarisation, s
     assert result.status is Status.JUMP
 
 
+@given(seed=SEEDS)
+def test_two_jumps_that_meet_are_followed_together(seed: int) -> None:
+    """A bowl around (1, 1), which ends at the curves x + y**2 = 0.2 and x / 2 + y = 0.3."""
+
+    def walls(theta: Floats) -> tuple[Floats, Floats]:
+        x, y = theta
+        g = np.array([x + y**2 - 0.2, x / 2 + y - 0.3])
+        return g, np.array([[1.0, 2 * y], [0.5, 1.0]])
+
+    @dataclass(frozen=True)
+    class Jumping(Known):
+        passed: tuple[int, ...] = ()
+
+        def continued(self, inside: Evaluation, beyond: Evaluation) -> Known | None:
+            crossed = [
+                k for k in np.flatnonzero(walls(beyond.theta)[0] > 0) if k not in self.passed
+            ]
+            return jumping(*self.passed, int(crossed[0])) if crossed else None
+
+    def jumping(*passed: int) -> Known:
+        def function(theta: Floats) -> Derivatives:
+            (g, dg), rows = walls(theta), list(passed)
+            J = ((theta - 1) ** 2).sum() + 9.0 * (np.delete(g, rows) > 0).any()
+            H = np.array([2 * np.eye(2), *[np.zeros((2, 2))] * len(rows)])
+            return np.append(J, g[rows]), np.vstack([2 * (theta - 1), dg[rows]]), H
+
+        x = box(function, [-2, -2], [2, 2], 1 + len(passed))
+        return Jumping(x.function, x.lower, x.upper, x.start, x.objectives, passed)
+
+    theta = np.random.default_rng(seed).uniform(-2, [0.0, 0.3])
+    assume((walls(theta)[0] < -0.1).all())
+    problem = jumping()
+    result = solve(problem, weighted(np.ones(1)), begin(problem.evaluate(theta)))
+    x = (np.sqrt(0.6) - 0.7) / 0.5
+    np.testing.assert_allclose(result.theta, [x, 0.3 - x / 2], atol=1e-5)
+    assert result.status is Status.JUMP
+    assert result.evaluations < 80
+
+
 def test_an_exhausted_search_says_so() -> None:
     problem = box(curved, [-2, -2], [2, 2])
     start = begin(problem.evaluate(np.array([1.9, -1.9])))

@@ -353,9 +353,15 @@ def test_pairs_go_on_beyond_where_mac_values_change_them() -> None:
             np.testing.assert_array_equal(found.J[:-1], x.J)
             assert found.J[-1] < 0 or (pairs != here).any()
         np.testing.assert_array_equal(found.J, smooth.evaluate(x.theta, derivatives=False).J)
-    middle, h = smooth.evaluate(beyond.theta), 1e-6
+    both = smooth.continued(inside, replace(inside, quantities={"paired_mode": here[::-1]}))
+    assert smooth.continued(inside, beyond) is None
+    assert both is not None
+    middle, h = both.evaluate(beyond.theta), 1e-6
+    np.testing.assert_array_equal(middle.J[:-1], smooth.evaluate(beyond.theta).J)
+    assert middle.J[-1] < 0 < middle.J[-2]
+    assert not both.evaluate(beyond.theta, second=True).exact
     for j, step in enumerate(h * np.eye(4)):
-        ahead, behind = (smooth.evaluate(beyond.theta + x).J for x in (step, -step))
+        ahead, behind = (both.evaluate(beyond.theta + x).J for x in (step, -step))
         np.testing.assert_allclose((ahead - behind) / (2 * h), middle.dJ[:, j], atol=1e-6)
 
 

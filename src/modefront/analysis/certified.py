@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from modefront._typing import Floats, Ints
+from modefront._typing import Floats
 from modefront.errors import ModelError, UnfinishedError
 from modefront.front.front import Front, best_minima
 from modefront.front.search import Search
@@ -22,7 +22,7 @@ from modefront.models.reduced.model import WORST, ReducedModel, SnapshotRequest
 from modefront.optim.scalarisation import LogSum
 from modefront.optim.sqp import Solution
 from modefront.pairing.match import match, modes_needed
-from modefront.residuals.problem import UpdatingProblem
+from modefront.residuals.problem import UpdatingProblem, paired
 from modefront.work.codec import record
 from modefront.work.task import Executor, Task, Within
 
@@ -127,13 +127,12 @@ def certify(
     model = _reduced(problem)
     if model is None or not solutions:
         return
-    basis = model.basis
     tasks = [
-        Task(("certificate", name, k + 1), _errors, (problem, basis, solution))
+        Task(("certificate", name, k + 1), _errors, (problem, model.basis, solution))
         for k, solution in enumerate(solutions)
     ]
     found = zip(solutions, work.run(tasks), strict=True)
-    model.errors.update({_key(solution): errors for solution, errors in found})
+    model.errors.update({solution.theta.tobytes(): errors for solution, errors in found})
 
 
 def certificate_attributes(problem: UpdatingProblem) -> dict[str, str | int | float]:
@@ -149,7 +148,7 @@ def certificate_values(
     model = _reduced(problem)
     if model is None:
         return {}
-    errors = np.array([model.errors[_key(x)] for x in solutions])  # (solutions, 2, modes)
+    errors = np.array([model.errors[x.theta.tobytes()] for x in solutions])  # (solutions, 2, modes)
     eigenvalue, shape = errors[:, 0], errors[:, 1]
     return {
         f"{prefix}eigenvalue_error": eigenvalue,
@@ -183,7 +182,7 @@ def _mended(
     problem: UpdatingProblem, model: ReducedModel, needed: Sequence[Solution], work: Executor
 ) -> SnapshotTaken | None:
     """Take a snapshot of the solutions with the greatest errors above the tolerance, if any."""
-    error = [float(model.errors[_key(x)][0].max()) for x in needed]
+    error = [float(model.errors[x.theta.tobytes()][0].max()) for x in needed]
     ranked = sorted(range(len(needed)), key=lambda k: -error[k])
     wrong = [needed[k] for k in ranked if error[k] > model.tolerance][:WORST]
     if not wrong:
@@ -223,7 +222,7 @@ def _taken(model: ReducedModel, request: SnapshotRequest) -> SnapshotTaken | Non
 
 def _snapshot(solutions: Sequence[Solution], enough: float) -> SnapshotRequest:
     """Return the snapshot of some models, of modes up to the last one that is paired."""
-    modes = max(int(_paired(solution).max()) + 1 for solution in solutions)
+    modes = max(int(paired(solution.evaluation).max()) + 1 for solution in solutions)
     return SnapshotRequest(np.array([solution.theta for solution in solutions]), modes, enough)
 
 
@@ -238,13 +237,13 @@ def _errors(problem: UpdatingProblem, basis: Basis, solution: Solution) -> tuple
     They are infinite where the full model may pair other modes: where one of those that are looked
     at is missing, or where better known modes would be paired differently.
     """
-    modes, place = np.unique(_paired(solution), return_inverse=True)
+    modes, place = np.unique(paired(solution.evaluation), return_inverse=True)
     count = _lowest(problem)
     certificate = certificate_of(basis, solution.theta, modes, count)
     if np.isfinite(certificate.eigenvalue).all():
         frequency = np.sqrt(np.maximum(certificate.lam[:count], 0.0)) / (2 * np.pi)
         pairs = match(problem.pairing, problem.data, frequency, certificate.phi[:, :count])
-        if not np.array_equal(pairs.index, _paired(solution)):
+        if not np.array_equal(pairs.index, paired(solution.evaluation)):
             return np.full(place.shape, np.inf), np.ones(place.shape)
     return certificate.eigenvalue[place], certificate.shape[place]
 
@@ -254,7 +253,7 @@ def _models(front: Front, others: Iterable[Solution]) -> list[Solution]:
     every = [point.solution for point in front.points] + [edge.best for edge in front.edges]
     every += [*front.optimal[:1], *([front.iterated] if front.iterated else [])]
     every += [*(end for gap in front.gaps for end in gap.ends), *others]
-    return list({_key(solution): solution for solution in every}.values())
+    return list({solution.theta.tobytes(): solution for solution in every}.values())
 
 
 def _rivals(problem: UpdatingProblem, model: ReducedModel, front: Front) -> Iterator[Solution]:
@@ -265,7 +264,7 @@ def _rivals(problem: UpdatingProblem, model: ReducedModel, front: Front) -> Iter
     """
 
     def roots(solution: Solution) -> tuple[Floats, Floats]:
-        margin = problem.margins(*model.errors[_key(solution)])
+        margin = problem.margins(*model.errors[solution.theta.tobytes()])
         return np.maximum(np.sqrt(solution.J) - margin, 0.0), np.sqrt(solution.J) + margin
 
     for i, edge in enumerate(front.edges):
@@ -276,13 +275,3 @@ def _rivals(problem: UpdatingProblem, model: ReducedModel, front: Front) -> Iter
         least, most = roots(solution)[0], roots(front.optimal[0])[1]
         if not least.all() or value(least**2) <= value(most**2):
             yield solution
-
-
-def _paired(solution: Solution) -> Ints:
-    """Return the modes that the rule of the problem pairs with measured ones, counted from 0."""
-    of = solution.evaluation.quantities
-    return of.get("mac_mode", of["paired_mode"]).astype(int) - 1
-
-
-def _key(solution: Solution) -> bytes:
-    return solution.theta.tobytes()

@@ -57,17 +57,16 @@ def iterate_weights(
 
     The status says whether successive models agree to the tolerance of the parameters.
     """
-    options = Options()
     evaluations, status = 0, Status.EXHAUSTED
     for _ in range(limit):
         if not np.isfinite(programme.value(start.J)):
             return None
         w = programme.gradient(start.J)
-        solution = solve(problem, weighted(w / w.sum()), start, options)
+        solution = solve(problem, weighted(w / w.sum()), start)
         evaluations += solution.evaluations
         moved = (solution.theta - start.theta) / (problem.upper - problem.lower)
         start = replace(solution, weights=w)
-        if np.abs(moved).max() <= options.step:
+        if np.abs(moved).max() <= Options().step:
             status = solution.status
             break
     return replace(start, status=status, evaluations=evaluations)

@@ -176,17 +176,21 @@ class _Jump:
     def along(self, programme: Scalarisation, here: Solution) -> Solution:
         """Return the best model along a jump from one next to it.
 
-        Its status is `Status.JUMP` if it is stationary but for the jump.
+        Its status is `Status.JUMP` if it is stationary but for the jump. Where another one meets
+        it, it is the best one along both.
         """
         slopes = self.start.dJ * (self.problem.upper - self.problem.lower)
         units = np.linalg.norm([here.weights @ slopes[:-1], slopes[-1]], axis=1)
         within = Constrained(programme, *np.maximum(units, LEAST).tolist())
-        found, _ = _descend(self.smooth, within, begin(self.start), Options())
+        found, other = _descend(self.smooth, within, begin(self.start), Options())
+        if other and -found.J[-1] <= 4 * DISTINCT * within.last:
+            corner = other.along(within, found)
+            found = replace(corner, evaluations=found.evaluations + corner.evaluations)
         end = self.problem.evaluate(found.theta, second=True)
-        held = found.converged and abs(found.J[-1]) <= 2 * MARGIN * within.last
+        ended = found.status in (Status.CONVERGED, Status.JUMP)
+        held = ended and abs(found.J[-1]) <= 2 * MARGIN * within.last
         status = Status.JUMP if held else Status.EXHAUSTED
-        w = found.weights[:-1] * within.unit
-        return Solution(end, w, status, found.evaluations + 2)
+        return Solution(end, found.weights[:-1] * within.unit, status, found.evaluations + 2)
 
 
 def _jump(problem: Problem, here: Evaluation, beyond: Evaluation) -> _Jump | None:

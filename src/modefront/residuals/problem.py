@@ -174,10 +174,8 @@ class UpdatingProblem(Shown):
         None where the pairs of both models are the same, or those that are least in something: no
         objectives jump then because of them.
         """
-        q, other = (x.quantities["paired_mode"].astype(np.intp) - 1 for x in (inside, beyond))
-        if self.likelihood is not None or np.array_equal(q, other):
-            return None
-        return Continued(self, q, other)
+        known = Continued(self, paired(inside)[None])
+        return known.continued(inside, beyond) if self.likelihood is None else None
 
     def modes(self, theta: Floats, *, derivatives: bool = True) -> tuple[Modes, Pairs]:
         """Return the model's modes at ``theta`` and which of them belong to the measured ones."""
@@ -238,44 +236,54 @@ class UpdatingProblem(Shown):
         return np.sqrt(np.array(squares))
 
 
+def paired(evaluation: Evaluation) -> Ints:
+    """Return the modes that the rule of the problem pairs with measured ones, counted from 0."""
+    of = evaluation.quantities
+    return of.get("mac_mode", of["paired_mode"]).astype(np.intp) - 1
+
+
 @dataclass(eq=False)
 class Continued:
-    r"""A problem in which the pairs on one side of a jump hold on its other side too.
+    r"""A problem in which the pairs on one side of jumps hold on their other sides too.
 
-    Its last objective is the sum of the MAC values of the pairs beyond, less that of those inside:
-    the jump is where it is 0.
+    Its last objectives are the sums of the MAC values of the pairs beyond each jump, less that of
+    those inside: the jumps are where they are 0.
     """
 
     problem: UpdatingProblem
-    inside: Ints  # inside, beyond: (measured modes,) paired model modes, counted from 0
-    beyond: Ints
+    pairs: Ints  # (1 + jumps, measured modes) paired model modes inside and beyond each, from 0
 
     def __post_init__(self) -> None:
-        self.objectives = (*self.problem.objectives, "beyond")
+        self.objectives = (*self.problem.objectives, *["beyond"] * (len(self.pairs) - 1))
         self.lower, self.upper = self.problem.lower, self.problem.upper
         self.start = self.problem.start
+
+    def continued(self, _: Evaluation, beyond: Evaluation) -> "Continued | None":
+        """Return the problem that goes on beyond one more jump; None where it does already."""
+        is_known = (paired(beyond) == self.pairs).all(axis=1).any()
+        return None if is_known else replace(self, pairs=np.vstack([self.pairs, paired(beyond)]))
 
     def evaluate(
         self, theta: Floats, *, derivatives: bool = True, second: bool = False
     ) -> Evaluation:
-        """Return the objectives at ``theta``; second derivatives of the last one are left out."""
+        """Return the objectives at ``theta``; second derivatives of the last are left out."""
         problem = self.problem
         try:
             modes, pairs = problem.modes(theta, derivatives=derivatives)
         except ModelError:
             return infeasible(theta, len(self.objectives))
-        values, rows = mean_mac(problem.data, modes.phi), np.arange(self.inside.size)
-        inside, beyond = (Pairs(q, values[rows, q]) for q in (self.inside, self.beyond))
-        if np.array_equal(pairs.index, self.beyond):
+        values, rows = mean_mac(problem.data, modes.phi), np.arange(self.pairs.shape[1])
+        inside, *beyond = (Pairs(q, values[rows, q]) for q in self.pairs)
+        if (pairs.index == self.pairs).all(axis=1).any():
             pairs = inside
         known = problem.evaluated(theta, modes, pairs, derivatives=derivatives, second=second)
-        J = np.append(known.J, np.nansum(beyond.mac - inside.mac))
+        J = np.append(known.J, [np.nansum(x.mac - inside.mac) for x in beyond])
         if not derivatives:
             return replace(known, J=J)
-        there, here = (mac_slopes(problem.data, x, modes.phi, modes.dphi) for x in (beyond, inside))
-        dJ = np.vstack([known.dJ, np.nansum(there - here, axis=0)])
-        H = np.concatenate([known.H, np.zeros((1, theta.size, theta.size))])
-        return replace(known, J=J, dJ=dJ, H=H, residuals=())
+        slopes = [mac_slopes(problem.data, x, modes.phi, modes.dphi) for x in (inside, *beyond)]
+        dJ = np.vstack([known.dJ, *(np.nansum(x - slopes[0], axis=0) for x in slopes[1:])])
+        H = np.pad(known.H, ((0, len(beyond)), (0, 0), (0, 0)))
+        return replace(known, J=J, dJ=dJ, H=H, exact=False, residuals=())
 
 
 # 8 arguments: the parts of a problem, the optional ones by keyword.
