@@ -22,11 +22,10 @@ from modefront.rounding import COMPUTED
 from modefront.uncertainty.inference import CHANCE, Inference, excluding, refused
 from modefront.uncertainty.prediction import summary
 from modefront.uncertainty.prior import NoiseModel, prior_widths
+from modefront.uncertainty.sampling import QUANTILES
 
 ITERATED = "iterated-weights"
 """Name of the fixed point of the iteration of the weights, among the minima."""
-
-QUANTILES = (0.05, 0.5, 0.95)  # quantiles of the parameters: a 90 % interval and the median
 
 DETERMINED, OPEN = 1 / 3, 0.8
 """Width of the 90 % interval over that of the prior, below which a parameter is determined, and

@@ -39,8 +39,6 @@ WORSE = 1.1  # error of a group over the nominal model's, from which that one is
 TRIED = 3  # fixed parameters that are tried at most
 
 GAIN = 0.1  # share of its errors that a group loses without bounds that are worth widening
-
-
 SHAPES = ("shape", "subspace")  # kinds of residuals that have what a further sensor measures
 
 STARTS = 12  # searches at most, from the most probable of the known models

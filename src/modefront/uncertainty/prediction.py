@@ -12,6 +12,7 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.optim.problem import room
+from modefront.uncertainty.sampling import QUANTILES
 
 SUMMARY = ("mean", "standard deviation", "5 %", "50 %", "95 %")  # statistics of a sample
 STEP = 0.5  # of a difference, in standard deviations
@@ -90,5 +91,5 @@ def summary(values: Floats) -> Floats:
         known = column[np.isfinite(column)]
         if known.size > 1:
             out[:2, i] = known.mean(), known.std(ddof=1)
-            out[2:, i] = np.quantile(known, [0.05, 0.5, 0.95], method="weibull")
+            out[2:, i] = np.quantile(known, QUANTILES, method="weibull")
     return out

@@ -33,8 +33,9 @@ from modefront.work.task import Executor, Task, seed_sequence
 
 DRAWS = 200  # effective draws for intervals: the 5 % quantile is known to 0.15 standard deviations
 
+QUANTILES = (0.05, 0.5, 0.95)  # quantiles of the parameters: a 90 % interval and the median
+
 CHAINS, ROUND, LONGEST = 4, 50, 12  # chains, steps of a round, and of all chains over the draws
-INTERVAL = 0.05, 0.95  # ends of intervals, for which the size of a sample is found
 AGREE = 1.05  # deviation of all chains over that within them, from which they do not agree
 ACCEPTED = 0.35  # share of steps nearby that are taken, below which they become shorter
 APART = 1.0  # distance of two models, in standard deviations, below which one leads to the other
@@ -513,7 +514,7 @@ def agreement(x: Floats) -> tuple[Floats, Floats]:
     places = [np.searchsorted(np.sort(x), [x, np.nextafter(x, np.inf)]) for x in each]
     ranks = (np.sum(places, axis=1).T + 1) / 2  # the mean one of those that are the same
     y = ndtri((ranks - 0.375) / (len(ranks) + 0.25)).reshape(both.shape)
-    below = [halves <= end for end in np.quantile(halves, INTERVAL, axis=(0, 1))]
+    below = [halves <= end for end in np.quantile(halves, QUANTILES[::2], axis=(0, 1))]
     y = np.concatenate([y, *below], axis=2)
     within = y.var(axis=1, ddof=1).mean(axis=0)
     total = within * (half - 1) / half + y.mean(axis=1).var(axis=0, ddof=1)
