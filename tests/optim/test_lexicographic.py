@@ -51,6 +51,21 @@ def test_the_path_goes_on_until_a_weak_objective_is_least(stiffness: float) -> N
         assert best.theta == pytest.approx([x, 1 / x], abs=1e-4)
 
 
+def test_a_path_that_leads_to_worse_others_than_the_minimum_below_a_start_is_not_taken() -> None:
+    """Off the line r = 1, where epsilon is great, the second of two wells in t is none."""
+
+    def wells(theta: Floats) -> Derivatives:
+        r, t = theta
+        well = np.poly1d([16, -32, 16, -1.5, 0])
+        J = np.array([(r - 1) ** 2, 20 * (2 - r) ** 2 + well(t) + 12 * (r - 1) * t])
+        dJ = np.array([[2 * (r - 1), 0], [40 * (r - 2) + 12 * t, well.deriv()(t) + 12 * (r - 1)]])
+        return J, dJ, np.array([[[2.0, 0], [0, 0]], [[40.0, 12], [12, well.deriv(2)(t)]]])
+
+    problem = box(wells, [0.0, -0.5], [2.0, 1.5])
+    best = Lexicographic(0, ONES).solve(problem, begin(problem.evaluate(np.array([1.2, 0.8]))))
+    assert best.theta == pytest.approx([1, 1.04155], abs=1e-4)
+
+
 def test_a_minimum_above_the_least_known_one_is_not_followed_to_its_end() -> None:
     def raised(theta: Floats) -> Derivatives:
         J, dJ, H = valley(theta)

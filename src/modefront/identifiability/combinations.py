@@ -299,9 +299,14 @@ class Determination:
     effects: Floats  # (p, p) products of the effects of parameters on all weighted residuals
 
 
-def determination(problem: UpdatingProblem, evaluation: Evaluation) -> Determination:
-    """Return what the data determine at a model, with weights that are optimal for it."""
-    weights = optimal_weights(problem.properties, evaluation.J)
+def determination(
+    problem: UpdatingProblem, evaluation: Evaluation, weights: Floats | None = None
+) -> Determination:
+    """Return what the data determine at a model, with weights (n,) that are optimal for it.
+
+    Others may be given: of a model that is far from the data, misfits say nothing of errors.
+    """
+    weights = optimal_weights(problem.properties, evaluation.J) if weights is None else weights
     scale = scale_at(problem, evaluation.theta)
     idle = without_effect(problem, evaluation, scale)
     groups: list[tuple[str, int | None]] = [(x.name, i) for i, x in enumerate(problem.groups)]
@@ -328,8 +333,8 @@ class Sensitivities:
     superfluous: tuple[str, ...]  # parameters to fix, so that the data determine the others
 
 
-def sensitivities(problem: UpdatingProblem) -> Sensitivities:
-    """Return the sensitivities at the nominal parameters.
+def sensitivities(problem: UpdatingProblem, fixed: tuple[str, ...] = ()) -> Sensitivities:
+    """Return the sensitivities at the nominal parameters, with those that are ``fixed`` better.
 
     Raises ModelError where the model has no modes there.
     """
@@ -344,19 +349,22 @@ def sensitivities(problem: UpdatingProblem) -> Sensitivities:
         dphi = dphi / np.linalg.norm(modes.phi[:, pairs.index], axis=0)[:, None]
     frequency, phi, dphi = (np.where(np.isfinite(x), x, 0.0) for x in (frequency, phi, dphi))
     across = dphi - phi[:, :, None] * np.einsum("sr,srj->rj", phi, dphi)
-    names, fixed = problem.model.parameters, superfluous(problem, problem.evaluate(problem.start))
     shape = np.linalg.norm(across, axis=(0, 1))
-    return Sensitivities(names, problem.data.modes, frequency, shape, fixed)
+    return Sensitivities(problem.model.parameters, problem.data.modes, frequency, shape, fixed)
 
 
-def superfluous(problem: UpdatingProblem, nominal: Evaluation) -> tuple[str, ...]:
+def superfluous(problem: UpdatingProblem, weights: Floats | None = None) -> tuple[str, ...]:
     """Return the parameters with an effect of which the others leave least at the nominal model.
 
-    Without them no combination is hardly determined (singular value below 1 % of the greatest).
+    Without them no combination is hardly determined (singular value below 1 % of the greatest),
+    with weights (n,) as of `determination`.
     """
+    nominal = problem.evaluate(problem.start)
+    if not nominal.feasible:
+        return ()
     scale, names = scale_at(problem, problem.start), problem.model.parameters
     idle = without_effect(problem, nominal, scale)
-    weights = optimal_weights(problem.properties, nominal.J)
+    weights = optimal_weights(problem.properties, nominal.J) if weights is None else weights
     G = jacobian(problem, nominal, weights, scale.unit)
     kept = np.setdiff1d(np.flatnonzero(G.any(axis=0)), idle)
     chosen = kept[scipy.linalg.qr(G[:, kept], mode="r", pivoting=True)[1]].tolist()

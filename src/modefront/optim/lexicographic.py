@@ -89,10 +89,11 @@ class Lexicographic:
         for epsilon, begins in ((1 / RATIO, start), (1 / RATIO**4, best)):
             end = self._end(problem, epsilon, begins, known)
             spent += end.evaluations
-            if end.feasible and (end.J[i] <= best.J[i] or self.ties(end.J, best.J)):
-                isolated = self._equal(end.J, best.J)
+            isolated, tied = self._equal(end.J, best.J), self.ties(end.J, best.J)
+            worse = self.others @ end.J > self.others @ best.J if tied else end.J[i] > best.J[i]
+            if end.feasible and (isolated or not worse):
                 return replace(best if isolated else end, evaluations=spent, path=end.path)
-        return replace(best, evaluations=spent)  # the path leads to another basin
+        return replace(best, evaluations=spent)  # the paths lead to other basins
 
     def _end(
         self, problem: Problem, epsilon: float, start: Solution, known: Solution | None

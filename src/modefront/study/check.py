@@ -32,6 +32,7 @@ from modefront.identifiability.combinations import (
     Sensitivities,
     determination,
     sensitivities,
+    superfluous,
     unchanged_groups,
 )
 from modefront.inputs import available_memory
@@ -47,6 +48,7 @@ from modefront.study.definition import Study
 from modefront.study.file import as_study
 from modefront.text import Shown
 from modefront.uncertainty.inference import freed, maximum
+from modefront.uncertainty.prior import NoiseModel, weighed
 
 AGREEMENT = 1e-5  # greatest relative error of derivatives that finite differences explain
 STEP = 2e-3  # change of a residual in its own unit, root mean square, by a finite difference
@@ -132,11 +134,12 @@ def check(study: Study | UpdatingProblem | Path | str) -> Findings:
         nominal, beside = problem.evaluate(problem.start), compare(problem)
         mistakes = (*diagnose(beside), *(study.origin.notes if study.origin else ()))
         spoilt = any(each.kind not in HARMLESS for each in mistakes)
-        bounds = () if spoilt else excluding_bounds(study)
+        noise = study.noise.of(problem, study.uncertainty.of(problem.data))
+        bounds = () if spoilt else excluding_bounds(study, noise)
         mistakes += tuple(each for each in bounds if each.severity is Severity.MISTAKE)
         agreement = compared(problem)
         agrees = agreement.error <= AGREEMENT
-        known, left_open = determined(problem, nominal)
+        known, left_open = determined(*weighed(problem, noise))
         if spoilt:
             left_open = [each for each in left_open if each.kind == "no-effect"]
         derivatives = found(
@@ -152,19 +155,18 @@ def check(study: Study | UpdatingProblem | Path | str) -> Findings:
             mistakes,
             (*(x for x in bounds if x not in mistakes), *left_open, *_of_model(beside, nominal)),
             beside,
-            sensitivities(problem),
+            sensitivities(problem, superfluous(*weighed(problem, noise))),
             spoilt,
         )
 
 
-def excluding_bounds(study: Study) -> tuple[Finding, ...]:
+def excluding_bounds(study: Study, noise: NoiseModel | None) -> tuple[Finding, ...]:
     """Return the bounds that exclude what fits the data, if any, as the verdict of a run does.
 
     The most probable model is the one to which the nominal one leads. Where nothing is expected of
     the errors of some residuals, that is said instead.
     """
     problem = study.problem
-    noise = study.noise.of(problem, study.uncertainty.of(problem.data))
     if noise is None:
         return (found("not-expected"),) if study.noise.weight else ()
     best = maximum(noise, problem.start)
@@ -251,13 +253,15 @@ def refuse_unchanged_groups(problem: UpdatingProblem, file: str, unchanged: Sequ
 
 
 def determined(
-    problem: UpdatingProblem, nominal: Evaluation
+    problem: UpdatingProblem, weights: Floats | None = None
 ) -> tuple[list[Finding], list[Finding]]:
     """Return which combinations each group, and all, determine near the nominal parameters.
 
-    Beside these are the parameters without effect, what all data leave open, and those alike.
+    ``weights`` (n,) are those of `weighed`. Beside these are the parameters without effect, what
+    all data leave open, and those alike.
     """
-    names, of = problem.model.parameters, determination(problem, nominal)
+    names = problem.model.parameters
+    of = determination(problem, problem.evaluate(problem.start), weights)
     left_open = knowledge.no_effect(of.idle, names)
     degrees: dict[str, list[str]] = {"do not determine": [], "hardly determine": []}
     for each in of.combinations[-1][1]:

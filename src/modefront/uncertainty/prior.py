@@ -130,6 +130,13 @@ class NoiseModel:
         return np.sqrt(np.maximum(J - self.S, 0.0) / (np.maximum(self.a, 1.0) * self.level))
 
 
+def weighed(
+    problem: UpdatingProblem, noise: NoiseModel | None
+) -> tuple[UpdatingProblem, Floats | None]:
+    """Return a problem and the weights (n,) of its groups by expected errors, None without any."""
+    return (problem, None) if noise is None else (noise.problem, 1 / noise.level)
+
+
 @dataclass(frozen=True)
 class Distance:
     """Distance of parameters from the nominal ones, in the units of their priors."""
