@@ -137,8 +137,7 @@ def test_the_front_of_the_steel_bridge_over_its_standard_deviations(tmp_path: Pa
     assert findings.sound
     assert any("K_" in warning for warning in findings.warnings)
     # `check` and the verdict judge bounds by one measure: wider ones lower no error by a tenth.
-    noise = study.noise.of(study.problem, study.uncertainty.of(study.problem.data))
-    assert excluding_bounds(study, noise) == ()
+    assert excluding_bounds(study) == ()
     results = run(study, tmp_path / "results")
     assert any("what wider bounds gain may be chance" in line for line in results.verdict)
     data = results.dataset

@@ -366,6 +366,18 @@ def test_parameters_that_the_data_do_not_determine_are_to_be_fixed(tmp_path: Pat
     assert "at the nominal values, or measure more; the data determine the other" in text
 
 
+def test_far_frequencies_of_a_nominal_model_leave_nothing_undetermined(tmp_path: Path) -> None:
+    """Expected errors say what data determine, and not the misfits of a model to be updated."""
+
+    def stiffer(rows: Rows) -> None:
+        for row in rows:
+            row["frequency"] = str(1.5 * float(row["frequency"]))
+
+    findings = findings_of(spoilt(tmp_path, CHAIN, data=stiffer))
+    assert not findings.warnings
+    assert not findings.sensitivities.superfluous
+
+
 def test_a_nominal_value_off_by_a_thousand(tmp_path: Path) -> None:
     study = spoilt(tmp_path, CHAIN)
     problem = load(study).problem

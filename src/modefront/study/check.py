@@ -48,7 +48,6 @@ from modefront.study.definition import Study
 from modefront.study.file import as_study
 from modefront.text import Shown
 from modefront.uncertainty.inference import freed, maximum
-from modefront.uncertainty.prior import NoiseModel, weighed
 
 AGREEMENT = 1e-5  # greatest relative error of derivatives that finite differences explain
 STEP = 2e-3  # change of a residual in its own unit, root mean square, by a finite difference
@@ -134,12 +133,12 @@ def check(study: Study | UpdatingProblem | Path | str) -> Findings:
         nominal, beside = problem.evaluate(problem.start), compare(problem)
         mistakes = (*diagnose(beside), *(study.origin.notes if study.origin else ()))
         spoilt = any(each.kind not in HARMLESS for each in mistakes)
-        noise = study.noise.of(problem, study.uncertainty.of(problem.data))
-        bounds = () if spoilt else excluding_bounds(study, noise)
+        bounds = () if spoilt else excluding_bounds(study)
         mistakes += tuple(each for each in bounds if each.severity is Severity.MISTAKE)
         agreement = compared(problem)
         agrees = agreement.error <= AGREEMENT
-        known, left_open = determined(*weighed(problem, noise))
+        weighed = study.noise.weighed(problem, study.uncertainty.of(problem.data))
+        known, left_open = determined(*weighed)
         if spoilt:
             left_open = [each for each in left_open if each.kind == "no-effect"]
         derivatives = found(
@@ -155,18 +154,19 @@ def check(study: Study | UpdatingProblem | Path | str) -> Findings:
             mistakes,
             (*(x for x in bounds if x not in mistakes), *left_open, *_of_model(beside, nominal)),
             beside,
-            sensitivities(problem, superfluous(*weighed(problem, noise))),
+            sensitivities(problem, superfluous(*weighed)),
             spoilt,
         )
 
 
-def excluding_bounds(study: Study, noise: NoiseModel | None) -> tuple[Finding, ...]:
+def excluding_bounds(study: Study) -> tuple[Finding, ...]:
     """Return the bounds that exclude what fits the data, if any, as the verdict of a run does.
 
     The most probable model is the one to which the nominal one leads. Where nothing is expected of
     the errors of some residuals, that is said instead.
     """
     problem = study.problem
+    noise = study.noise.of(problem, study.uncertainty.of(problem.data))
     if noise is None:
         return (found("not-expected"),) if study.noise.weight else ()
     best = maximum(noise, problem.start)
@@ -257,8 +257,8 @@ def determined(
 ) -> tuple[list[Finding], list[Finding]]:
     """Return which combinations each group, and all, determine near the nominal parameters.
 
-    ``weights`` (n,) are those of `weighed`. Beside these are the parameters without effect, what
-    all data leave open, and those alike.
+    ``weights`` (n,) of the groups are those of expected errors. Beside these are the parameters
+    without effect, what all data leave open, and those alike.
     """
     names = problem.model.parameters
     of = determination(problem, problem.evaluate(problem.start), weights)

@@ -42,7 +42,6 @@ from modefront.study.check import refuse_too_many, refuse_unchanged_groups
 from modefront.study.definition import Study, StudyOptions
 from modefront.study.file import as_study
 from modefront.uncertainty.inference import infer, most_probable
-from modefront.uncertainty.prior import weighed
 from modefront.uncertainty.sampling import DRAWS
 from modefront.work.progress import Progress
 from modefront.work.store import FOLDER, NOTE, Run, Store, locked
@@ -222,7 +221,7 @@ def worked(study: Study, work: Run) -> Dataset:
     runner = PredictionRunner(problem, study.predictions, seed, again, study.file)
     draws = study.uncertainty.draws
     data = with_predictions(data, runner, study.slack, gaussian, draws, drawn)
-    spare = superfluous(*weighed(problem, noise))
+    spare = superfluous(*study.noise.weighed(problem, study.uncertainty.of(problem.data)))
     return with_verdict(data, spare).assign_attrs(_attributes(study, work, front))
 
 

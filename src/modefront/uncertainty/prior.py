@@ -89,6 +89,16 @@ class NoisePrior(Checked):
         logs = LogSum(a + self.weight, self.weight * level - S)
         return NoiseModel(replace(scaled, likelihood=logs), a, S, d, level, self.weight, words)
 
+    def weighed(
+        self, problem: UpdatingProblem, source: Source | None
+    ) -> tuple[UpdatingProblem, Floats | None]:
+        """Return a problem, and weights (n,) of its groups by expected errors whatever these weigh.
+
+        None where nothing can be expected of some residuals.
+        """
+        noise = replace(self, weight=self.weight or 1.0).of(problem, source)
+        return (problem, None) if noise is None else (noise.problem, 1 / noise.level)
+
 
 @dataclass(frozen=True)
 class NoiseModel:
@@ -128,13 +138,6 @@ class NoiseModel:
     def over_expected(self, J: Floats) -> Floats:
         """Return the root mean square errors (n,) of J' (n,) over those expected."""
         return np.sqrt(np.maximum(J - self.S, 0.0) / (np.maximum(self.a, 1.0) * self.level))
-
-
-def weighed(
-    problem: UpdatingProblem, noise: NoiseModel | None
-) -> tuple[UpdatingProblem, Floats | None]:
-    """Return a problem and the weights (n,) of its groups by expected errors, None without any."""
-    return (problem, None) if noise is None else (noise.problem, 1 / noise.level)
 
 
 @dataclass(frozen=True)
