@@ -17,13 +17,14 @@ class Polish:
 
     A point of the lattice that no search has reached has the best known model as its incumbent:
     those that lag least behind what they could be come first, next to what is solved. So a front
-    is followed from its edges inwards, each point from its neighbour. A point that ends beside its
-    normal is solved from those that lie on their own, the nearest first, as long as that has a
-    chance to gain, and one that does not meet its equations from as many as there are objectives:
-    the front may go on from another side.
+    is followed from its edges inwards, each point from its neighbour. Then points are solved from
+    those that lie on their normals, the nearest first, as long as that has a chance to gain: the
+    front may go on from another side. A point that lies on its own, or misses its equations, is
+    solved from as many as there are objectives at most.
     """
 
-    idle: int = 0  # searches from other points since the last gain
+    # searches from other points since the last gain, of points on their normals and of others
+    idle: dict[bool, int] = field(default_factory=dict)
     _tried: set[tuple[Key, bytes]] = field(default_factory=set)
 
     def offers(self, state: State, most: int) -> Iterator[Offer]:
@@ -35,19 +36,21 @@ class Polish:
         points = [(x, x.subproblem) for x in state.places if isinstance(x.subproblem, LatticePoint)]
         met = [x.incumbent for x, of in points if of.met(x.incumbent)]
         J = np.array([x.J for x in met]).reshape(-1, len(state.problem.objectives))
-        for place, of in points:
-            if place.closed and not of.met(place.incumbent):
-                nearest = [met[m] for m in of.order.spread(J).argsort(kind="stable").tolist()]
-                chance, count = 1 / (self.idle + 2), 1
-                if of.equations:
-                    chance, count = 1.0, J.shape[1]
-                    nearest = nearest[:count]
-                new = (y for y in nearest if (of.key, y.theta.tobytes()) not in self._tried)
-                yield from (solve_from(place, y, chance) for y in islice(new, count))
+        for place, of in (x for x in points if x[0].closed):
+            nearest = [met[m] for m in of.order.spread(J).argsort(kind="stable").tolist()]
+            nearest, on = [x for x in nearest if x is not place.incumbent], of.met(place.incumbent)
+            needed = of.equations and not on
+            near = nearest[: J.shape[1]] if on or needed else nearest
+            chance = 1.0 if needed else 1 / (self.idle.get(on, 0) + 2)
+            new = (y for y in near if (of.key, y.theta.tobytes()) not in self._tried)
+            yield from (solve_from(place, y, chance) for y in islice(new, len(near) * needed or 1))
 
     def learn(self, state: State, offer: Offer, _: Outcome, gain: float) -> None:
         """Remember from which model a place was solved, and count what others have led to."""
-        if offer.place:
-            self._tried.add((offer.place.subproblem.key, offer.start.theta.tobytes()))
-        if offer.chance < 1:
-            self.idle = 0 if gain > state.limits.tolerance else self.idle + 1
+        if place := offer.place:
+            self._tried.add((place.subproblem.key, offer.start.theta.tobytes()))
+            if offer.chance < 1 and gain > state.limits.tolerance:
+                self.idle.clear()
+            elif offer.chance < 1 and isinstance(of := place.subproblem, LatticePoint):
+                on = of.met(place.incumbent)
+                self.idle[on] = self.idle.get(on, 0) + 1
