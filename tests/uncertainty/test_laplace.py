@@ -40,6 +40,10 @@ def test_one_group_of_linear_residuals_has_students_covariance() -> None:
     point, posterior = found_at(problem, np.array([40.0]))
     expected = point.J[0] / 40 * np.linalg.inv(A.T @ A)
     assert posterior.covariance == pytest.approx(expected, rel=1e-6)
+    C, z = 1e-4 * A, 1e-4 * y  # residuals in another unit
+    other = squares(lambda theta: [(C @ theta - z, C)], [-5, -5], [5, 5], 1)
+    same = found_at(other, np.array([40.0]))[1].covariance
+    assert same == pytest.approx(posterior.covariance, rel=1e-6)
     # The t distribution with a - 2 degrees of freedom has the greater variance J / (a - 4).
     t = point.J[0] / (40 - 4) * np.linalg.inv(A.T @ A)
     assert posterior.covariance == pytest.approx(t, rel=0.11)

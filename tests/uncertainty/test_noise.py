@@ -1,6 +1,7 @@
 """Sources of error: derivatives with respect to data, and the variance of means over data sets."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -46,6 +47,46 @@ def test_where_the_uncertainty_comes_from() -> None:
     assert available(bare) == ("sets",)
     f, phi = bare.frequency[:1], bare.shape[:1]
     assert available(mf.modal_data(f, phi, MODEL.sensors)) == ()
+    part = np.where(np.arange(3) < 2, bare.shape, np.nan)  # shapes alone, at two sensors
+    unknown = replace(bare, frequency=np.nan * bare.frequency, shape=part)
+    assert available(unknown) == ("sets",)
+    assert available(replace(unknown, shape_std=0.1 * np.abs(part))) == ("std", "sets")
+    shifted = part.copy()
+    shifted[0, :2], shifted[1, 2] = np.nan, np.nan  # no mode in both sets
+    assert available(replace(unknown, shape=shifted)) == ()
+    assert mf.Uncertainty().of(data) == "std"
+    assert mf.Uncertainty("sets").of(data) == "sets"
+    assert mf.Uncertainty("none").of(data) is None
+    assert mf.Uncertainty().of(replace(unknown, shape=shifted)) is None
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"bootstrap": -1}, "bootstrap"),
+        ({"draws": 10**6 + 1}, "draws"),
+        ({"source": "both"}, "source"),
+        ({"source": "none", "bootstrap": 5}, "bootstrap: expected 0 with source = 'none', found 5"),
+    ],
+)
+def test_samples_of_no_source_and_of_no_size_are_refused(
+    options: dict[str, Any], message: str
+) -> None:
+    with pytest.raises(mf.InputError, match=message):
+        mf.Uncertainty(**options)
+
+
+def test_what_data_do_not_have_is_a_fault() -> None:
+    bare = mf.modal_data(np.array([1.0]), np.ones((1, 3)), MODEL.sensors)
+    for options, expected in (
+        ({"source": "std"}, "source: expected standard deviations above 0"),
+        ({"source": "sets"}, "source: expected a mode measured in two data sets"),
+        ({"bootstrap": 3}, "bootstrap: expected 0, or data with standard deviations"),
+    ):
+        asked: Any = mf.Uncertainty(**options)
+        with pytest.raises(mf.InputError, match=expected):
+            asked.of(bare)
+    assert [*mf.Uncertainty().faults(bare)] == []
 
 
 @pytest.mark.parametrize("scale", ["measured", "std"])
