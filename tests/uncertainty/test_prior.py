@@ -249,7 +249,7 @@ def test_expected_deviations_are_those_of_the_data_or_assumed_value_by_value(
     f, phi = rng.uniform(5, 9, (3, 2)), rng.uniform(0.2, 1, (3, 2, 4))
     f[0, 1], phi[1, 0], phi[2, 1, 2:] = np.nan, np.nan, np.nan
     f_std, phi_std = 0.02 * f, 0.03 * phi
-    f_std[1, 1], f_std[2, 0] = np.nan, 1e-10
+    f_std[1, 1], f_std[2, 0] = np.nan, 3e-9
     phi_std[0, 1], phi_std[2, 0, 1], phi_std[0, 0, 3] = 0.0, 0.0, np.nan
     given = mf.modal_data(f, phi, ("a", "b", "c", "d"), frequency_std=f_std, shape_std=phi_std)
     found = expected(given, sizes, source)
