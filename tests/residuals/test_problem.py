@@ -101,10 +101,11 @@ def test_second_derivatives_agree_with_50_digit_arithmetic(theta: list[float]) -
             return precise_objectives(moved)
 
         for i in range(4):
-            for k in range(4):
+            for k in range(i + 1):
                 corners = (J(i, k, 1, 1), J(i, k, -1, -1), J(i, k, 1, -1), J(i, k, -1, 1))
                 for n, (a, b, c, d) in enumerate(zip(*corners, strict=True)):
-                    error = abs(result.H[n, i, k] - float((a + b - c - d) / (4 * h**2)))
+                    both = np.array([result.H[n, i, k], result.H[n, k, i]])
+                    error = np.abs(both - float((a + b - c - d) / (4 * h**2))).max()
                     assert error <= 1e-8 * np.abs(result.H[n]).max()
 
 

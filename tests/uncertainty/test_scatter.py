@@ -86,9 +86,14 @@ def point_of(problem: Squares, result: Solution) -> Evaluation:
     return point
 
 
-def compare(result: Scatter, ahead: list[Solution], behind: list[Solution], by: float) -> None:
-    """Assert that a linearisation agrees with solutions of data moved to either side."""
-    for m, (first, other) in enumerate(zip(ahead, behind, strict=True)):
+def compare(
+    result: Scatter, ahead: list[Solution], behind: list[Solution], by: float, every: int = 1
+) -> None:
+    """Assert that a linearisation agrees with solutions of data moved to either side.
+
+    ``every`` so many of the sources of error are compared.
+    """
+    for m, first, other in zip(range(0, len(result.theta), every), ahead, behind, strict=True):
         theta = (first.theta - other.theta) / (2 * by)
         J = (first.J - other.J) / (2 * by)
         assert result.theta[m] == pytest.approx(theta, rel=1e-4, abs=1e-5)
@@ -191,9 +196,9 @@ def test_points_of_the_front_follow_their_edges(
     w, conditions = boundary(point, computed.weights, E, dE, place, noise, top=top)
     result = scatter(problem, point, w, conditions, noise)
     ahead, behind = (
-        [solved(case.moved(m, s * by).problem())[1] for m in range(5 * n)] for s in (1, -1)
+        [solved(case.moved(m, s * by).problem())[1] for m in range(0, 5 * n, 2)] for s in (1, -1)
     )
-    compare(result, ahead, behind, by)
+    compare(result, ahead, behind, by, 2)
 
 
 def test_a_parameter_pressed_against_its_bound_does_not_scatter() -> None:
