@@ -45,6 +45,8 @@ def test_equal_groups_are_equal_however_they_are_written() -> None:
 def test_kinds_may_be_given_by_position() -> None:
     assert Group("f", "all") == Group("f", frequency="all")
     assert Group("s", (), [2, 1]) == Group("s", shape=[2, 1])
+    whole = Group("w", [1], [2], [1, 3])
+    assert whole == Group("w", frequency=[1], shape=[2], subspace=[1, 3])
     with pytest.raises(ValueError, match=r"each of frequency, shape.* once at most"):
         Group("f", "all", frequency="all")
     with pytest.raises(ValueError, match=r"each of frequency, shape.* once at most"):

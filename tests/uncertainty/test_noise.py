@@ -115,14 +115,15 @@ def test_standard_deviations_are_carried_by_exact_derivatives(scale: Scale) -> N
         assert dJ == pytest.approx((first.dJ - other.dJ) / (2 * step), rel=1e-5, abs=1e-8)
 
 
-def test_data_sets_scatter_as_the_mean_of_their_objectives() -> None:
+@pytest.mark.parametrize("sets", [2, 5])
+def test_data_sets_scatter_as_the_mean_of_their_objectives(sets: int) -> None:
     """Without gaps, J is the mean of the objectives of single sets: so is its variance."""
-    data = measured(5)
+    data = measured(sets)
     data.frequency[0, 2], data.shape[-1, 1, 2] = 20.0, 0.1
     problem = problem_of(data, "measured")
     result = noise(problem, *problem.modes(THETA), "sets")
     single = []
-    for k in range(5):
+    for k in range(sets):
         changed = replace(
             data,
             **{
@@ -134,10 +135,10 @@ def test_data_sets_scatter_as_the_mean_of_their_objectives() -> None:
         single.append(problem_of(changed, "measured").evaluate(THETA))
     J = np.array([evaluation.J for evaluation in single])
     assert J.mean(axis=0) == pytest.approx(problem.evaluate(THETA).J)
-    assert result.J.T @ result.J == pytest.approx(np.cov(J.T) / 5)
+    assert result.J.T @ result.J == pytest.approx(np.cov(J.T) / sets)
     slopes = np.array([evaluation.dJ.ravel() for evaluation in single])
-    flat = result.dJ.reshape(5, -1)
-    assert flat.T @ flat == pytest.approx(np.cov(slopes.T) / 5, rel=1e-9, abs=1e-15)
+    flat = result.dJ.reshape(sets, -1)
+    assert flat.T @ flat == pytest.approx(np.cov(slopes.T) / sets, rel=1e-9, abs=1e-15)
 
 
 def test_a_mode_measured_once_counts_as_exact() -> None:
