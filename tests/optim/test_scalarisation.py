@@ -80,6 +80,7 @@ def test_a_sum_of_logarithms_has_the_weights_a_over_J_and_bounded_ones_with_a_fl
     assert LogSum(a, b).gradient(J) == pytest.approx(a / (J + b))
     assert (LogSum(a, b).gradient(0 * J) <= a / b).all()
     assert LogSum(a, 0.0, np.array([0.6, 0.0])).value(J) == -np.inf, "an objective vanishes"
+    assert LogSum(a).value(np.array([0.5, 0.0])) == -np.inf
 
 
 def test_the_logarithm_of_an_objective_that_vanishes_has_finite_derivatives() -> None:
