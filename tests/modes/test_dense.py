@@ -105,6 +105,28 @@ def test_close_modes_have_exact_derivatives(gap: float) -> None:
     assert not result.coincident.any()
 
 
+@pytest.mark.parametrize("gap", [1, 5])
+def test_modes_far_apart_are_exact_at_both_ends_of_the_spectrum(gap: int) -> None:
+    """Eigenvalues of nine decades, with a wide gap among the low ones or among the high ones."""
+    rng, size = np.random.default_rng(5), 8
+    A = rng.normal(size=(2, size, size))
+    powers = np.linspace(0, 3, size) + np.where(np.arange(size) >= gap, 1.8, 0)
+    powers[3:5] = powers[3:5].mean() + np.array([-0.05, 0.05])
+    scale = 10.0**powers
+    terms = [np.outer(scale, scale) * (0.02 * a @ a.T + np.eye(size)) for a in A]
+    K = DenseAffine(np.array(terms), Monomials(np.array([[0.0], [1.0]])))
+    masses = [np.diag(x) for x in rng.uniform(0.5, 2, (2, size))]
+    M, theta = DenseAffine(np.array(masses), K.coefficients), np.array([0.7])
+    result = modes(K, M, np.eye(size), theta, size, derivatives=True)
+    with mp.workdps(60):
+        lam, _ = precise_modes(K, M, [mp.mpf(0.7)])
+        dlam, dphi = precise_derivatives(K, M, theta, 0, result)
+    assert result.lam == pytest.approx([float(x) for x in lam], rel=1e-9)
+    assert result.dlam[:, 0] == pytest.approx(dlam, rel=1e-8)
+    error = np.linalg.norm((result.dphi[:, :, 0] - dphi), axis=0)
+    assert (error <= 1e-8 * np.linalg.norm(dphi, axis=0)).all()
+
+
 def test_coincident_modes_say_so_and_keep_what_is_defined() -> None:
     # Two equal masses on equal springs, joined by theta_3: at theta_3 = 0 the modes coincide.
     terms = np.array([np.diag([1.0, 0, 0]), np.diag([0, 1.0, 0]), np.zeros((3, 3))])

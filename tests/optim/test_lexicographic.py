@@ -88,6 +88,40 @@ def test_a_path_is_followed_once() -> None:
     assert again.evaluation is first.evaluation
     assert again.evaluations < 0.7 * anew.evaluations
     assert anew.J == pytest.approx(first.J, abs=1e-6)
+    assert first.path is not None
+    epsilon, minimised, others = first.path.T
+    assert epsilon == pytest.approx(0.1 ** np.arange(1, len(epsilon) + 1))
+    assert (np.diff(minimised) < 0).all()
+    assert minimised == pytest.approx(others * epsilon, rel=0.2), "J2 is the square of its slope"
+
+
+def test_a_path_of_another_well_is_none_that_leads_to_its_end() -> None:
+    problem, order = box(many_minima, [-4, -4], [4, 4]), Lexicographic(0, ONES)
+    first, other = (
+        order.solve(problem, begin(problem.evaluate(np.array(x))))
+        for x in ([1.1, -1.8], [1.1, 1.8])
+    )
+    for known, start in ((first, [1.1, 1.8]), (other, [1.1, -1.8])):
+        again = order.solve(problem, begin(problem.evaluate(np.array(start))), known)
+        assert again.theta == pytest.approx([1, np.copysign(2, start[1])], abs=1e-6)
+
+
+def test_units_of_objectives_do_not_matter() -> None:
+    def scaled(theta: Floats) -> Derivatives:
+        J, dJ, H = valley(theta)
+        unit = np.array([2.0**20, 2.0**-14])
+        return unit * J, unit[:, None] * dJ, unit[:, None, None] * H
+
+    start = np.array([0.3, 2.9])
+    one, other = (
+        Lexicographic(1, np.array(sizes)).solve(problem, begin(problem.evaluate(start)))
+        for problem, sizes in (
+            (box(valley, [0.1, 0.1], [3.0, 3.0]), [0.5, 2.0]),
+            (box(scaled, [0.1, 0.1], [3.0, 3.0]), [2.0**19, 2.0**-13]),
+        )
+    )
+    assert one.theta == pytest.approx(other.theta, abs=1e-7)
+    assert one.evaluations == other.evaluations
 
 
 @given(st.integers(0, 2**31), st.floats(1e-3, 1e3))
@@ -124,6 +158,7 @@ def test_ties_are_values_within_rounding_of_the_least() -> None:
     assert not order.ties(J, np.array([2.0 + 1e-5, 5.0]))
     assert order.ties(np.array([0.0, 5.0]), np.array([9e-10, 5.0])), "both are fitted exactly"
     assert order.others.tolist() == [0.0, 1.0]
+    assert order.programme(0.5).w.tolist() == [0.1, 0.5]
 
 
 def test_a_minimum_that_residuals_determine_is_not_open() -> None:

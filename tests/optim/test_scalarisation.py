@@ -6,11 +6,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from modefront.optim.scalarisation import (
+    MARGIN,
     STEEP,
+    Constrained,
     LogSum,
     Scalarisation,
     achievement,
     below,
+    total,
     weighted,
 )
 
@@ -23,6 +26,7 @@ PROGRAMMES = [
     LogSum(np.array([3.0, 9.0])),
     LogSum(np.array([3.0, 9.0]), np.array([0.5, 0.1])),
     LogSum(np.array([3.0, 0.0]), np.array([0.5, 1.0]), linear=np.array([0.0, 1.0])),
+    Constrained(LogSum(np.array([3.0])), 2.0, 0.5),
 ]
 
 
@@ -57,12 +61,26 @@ def test_an_achievement_is_the_greatest_of_its_functions() -> None:
     assert weighted(ONES).maximised.at(J).size == 0
 
 
+@pytest.mark.parametrize(
+    "programme", [weighted(np.array([1.0, 3.0])), PROGRAMMES[2], PROGRAMMES[3]]
+)
+def test_a_constraint_is_a_steep_penalty_over_a_unit(programme: Scalarisation) -> None:
+    within = Constrained(programme, 2.0, 0.5)
+    for g in (-0.7, -0.5 * MARGIN, 0.0, 0.02):
+        J = np.array([0.4, 0.9, g])
+        penalty = STEEP * max(0.0, g / 0.5 + MARGIN)
+        assert total(within, J) == pytest.approx(total(programme, J[:2]) / 2 + penalty)
+    assert within.maximised.slope == STEEP
+    assert within.gradient(J) == pytest.approx([*programme.gradient(J[:2]) / 2, 0.0])
+
+
 def test_a_sum_of_logarithms_has_the_weights_a_over_J_and_bounded_ones_with_a_floor() -> None:
     a, J, b = np.array([3.0, 9.0]), np.array([0.5, 2.0]), np.array([0.5, 1.0])
     assert LogSum(a).gradient(J) == pytest.approx(a / J)
     assert LogSum(a, b).gradient(J) == pytest.approx(a / (J + b))
     assert (LogSum(a, b).gradient(0 * J) <= a / b).all()
     assert LogSum(a, 0.0, np.array([0.6, 0.0])).value(J) == -np.inf, "an objective vanishes"
+    assert LogSum(a).value(np.array([0.5, 0.0])) == -np.inf
 
 
 def test_the_logarithm_of_an_objective_that_vanishes_has_finite_derivatives() -> None:

@@ -6,7 +6,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 import scipy.optimize
-from hypothesis import assume, given
+from exact import Residuals, squares
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from problems import Derivatives, Known, bowls, box, circles, curved, sphere
 
@@ -18,6 +19,7 @@ from modefront.optim.sqp import Options, Solution, Status, begin, learned_from, 
 
 SEEDS = st.integers(0, 2**31)
 LEVELS = 1e-4 * np.ones(2), np.eye(2), np.zeros(2)
+SUM = weighted(np.ones(2))
 
 
 # ---- one programme ---------------------------------------------------------------------------
@@ -127,7 +129,8 @@ def test_a_jump_is_told_from_a_minimum_and_its_other_side_is_tried(
     assert result.evaluations < 50
 
 
-@pytest.mark.parametrize("programme", [weighted(np.ones(2)), achievement(*LEVELS)])
+@pytest.mark.parametrize("programme", [SUM, achievement(*LEVELS)])
+@settings(max_examples=15)
 @given(seed=SEEDS)
 def test_a_jump_is_followed_where_a_problem_knows_it(programme: Scalarisation, seed: int) -> None:
     """Two bowls around (1, 0) and (1, 1), which end at the curve x + y**2 = 0.2."""
@@ -154,14 +157,14 @@ def test_a_jump_is_followed_where_a_problem_knows_it(programme: Scalarisation, s
     theta = np.random.default_rng(seed).uniform(-2, [-1.0, 1.5])
     assume(smooth(theta)[0][2] < -0.1)
     result = solve(problem, programme, begin(problem.evaluate(theta)))
-    ends = np.linspace(-2, 2, 4001)
-    along = [smooth(np.array([0.2 - y**2, y]))[0][:2] for y in ends]
-    assert total(programme, result.J) == pytest.approx(
-        min(total(programme, J) for J in along), abs=1e-4
-    )
+    y = np.linspace(-2, 2, 4001)
+    J = (0.8 + y**2) ** 2 + np.array([y, y - 1]) ** 2  # along the curve
+    value = J.sum(axis=0) if programme is SUM else LEVELS[0] @ J + J.max(axis=0)
+    assert total(programme, result.J) == pytest.approx(value.min(), abs=1e-4)
     assert result.status is Status.JUMP
 
 
+@settings(max_examples=15)
 @given(seed=SEEDS)
 def test_two_jumps_that_meet_are_followed_together(seed: int) -> None:
     """A bowl around (1, 1), which ends at the curves x + y**2 = 0.2 and x / 2 + y = 0.3."""
@@ -207,6 +210,105 @@ def test_an_exhausted_search_says_so() -> None:
     result = solve(problem, weighted(np.ones(2)), start, Options(iterations=1))
     assert result.status is Status.EXHAUSTED
     assert not result.converged
+
+
+@pytest.mark.parametrize(
+    ("share", "places"),
+    [
+        (0.9, [0.2, 0.5, 1.0]),
+        (0.5, [0.2, 0.35, 0.5]),
+        (0.2, [0.2, 0.275, 0.3125]),
+        (-0.5, [0.2, 0.0875, 0.059375]),
+        (np.inf, [0.2, 0.5, 0.275, 0.425, 0.3125, 0.284375]),
+    ],
+)
+def test_steps_are_as_long_as_what_they_promise_is_kept(share: float, places: list[float]) -> None:
+    """Steps of 0.15 and more that fall by a share of what they promise, or up to where J ends."""
+    tried: list[float] = []
+
+    def slope(theta: Floats) -> Derivatives:
+        tried.append(float(theta[0]))
+        J = -(share if np.isfinite(share) else 1.0) * theta
+        ends = theta[0] > 0.3 and not np.isfinite(share)
+        return np.where(ends, np.inf, J), -np.ones((1, 1)), np.zeros((1, 1, 1))
+
+    problem = replace(box(slope, [0.0], [1.0], 1), start=np.array([0.05]))
+    start = begin(problem.evaluate(problem.start))
+    limit = Options(iterations=len(places) + 1)
+    assert solve(problem, weighted(np.ones(1)), start, limit).status in (
+        Status.EXHAUSTED,
+        Status.CONVERGED,
+    )
+    assert tried[1 : len(places) + 1] == pytest.approx(places, abs=1e-9)
+
+
+def rosenbrock(theta: Floats) -> Residuals:
+    x, y = theta
+    return [(np.array([10 * (y - x**2), 1 - x]), np.array([[-20 * x, 10.0], [-1.0, 0.0]]))]
+
+
+def beale(theta: Floats) -> Residuals:
+    x, y = theta
+    k = np.arange(1, 4)
+    slopes = np.column_stack([y**k - 1, x * k * y ** (k - 1)])
+    return [(np.array([1.5, 2.25, 2.625]) - x * (1 - y**k), slopes)]
+
+
+def wood(theta: Floats) -> Residuals:
+    A = np.sqrt([[0, 100, 0, 0], [1, 0, 0, 0], [0, 0, 0, 90], [0, 0, 1, 0], [0, 10, 0, 10]])
+    A = np.vstack([A * [1, 1, -1, 1], np.sqrt(0.1) * np.array([0, 1, 0, -1])])
+    A[2, 2], A[3, 2], A[1, 0] = 0.0, -1.0, -1.0
+    bend = np.zeros((6, 4))
+    bend[0, 0], bend[2, 2] = -10.0, -np.sqrt(90)
+    r = A @ theta + bend @ theta**2 + [0, 1, 0, 1, -2 * np.sqrt(10), 0]
+    return [(r, A + 2 * bend * theta)]
+
+
+@pytest.mark.parametrize(
+    ("function", "start", "best", "exact", "most"),
+    [
+        (rosenbrock, [-1.2, 1.0], [1, 1], True, 10),
+        (rosenbrock, [-1.2, 1.0], [1, 1], False, 35),
+        (beale, [1.0, 1.0], [3, 0.5], True, 12),
+        (beale, [1.0, 1.0], [3, 0.5], False, 9),
+        (wood, [-3.0, -1.0, -3.0, -1.0], [1, 1, 1, 1], True, 34),
+        (wood, [-3.0, -1.0, -3.0, -1.0], [1, 1, 1, 1], False, 70),
+    ],
+)
+def test_bent_valleys_take_few_evaluations(
+    function: Callable[[Floats], Residuals],
+    start: list[float],
+    best: list[float],
+    exact: bool,
+    most: int,
+) -> None:
+    """Problems of Moré, Garbow & Hillstrom (1981), with exact second derivatives or without."""
+    problem = squares(function, [-5.0] * len(start), [5.0] * len(start), 1, exact)
+    result = solve(problem, weighted(np.ones(1)), begin(problem.evaluate(np.array(start))))
+    assert result.converged
+    assert result.theta == pytest.approx(best, abs=1e-4)
+    assert result.evaluations <= most
+
+
+@pytest.mark.parametrize(("slope", "first"), [(0.0, {0.5, -1.5}), (1e-9, {-1.5}), (-1e-9, {0.5})])
+def test_a_saddle_is_left_along_its_curvature_half_the_way_to_the_bound(
+    slope: float, first: set[float]
+) -> None:
+    tried: list[Floats] = []
+
+    def saddle(theta: Floats) -> Derivatives:
+        tried.append(theta)
+        x, y = theta
+        J = np.array([x**2 - y**2 + slope * y])
+        return J, np.array([[2 * x, slope - 2 * y]]), np.diag([2.0, -2.0])[None]
+
+    problem = box(saddle, [-1.0, -3.0], [1.0, 1.0], 1)
+    start = begin(problem.evaluate(np.zeros(2)))
+    result = solve(problem, weighted(np.ones(1)), start, Options(radius=1.0))
+    assert tried[1][0] == 0
+    assert float(tried[1][1].round(6)) in first
+    assert result.converged
+    assert abs(result.theta[1]) in (3.0, 1.0)
 
 
 # ---- merit -----------------------------------------------------------------------------------

@@ -166,10 +166,11 @@ def test_errors_of_shapes_bound_those_of_whitened_objectives(factor: float) -> N
 
 def test_data_drawn_again_scatter_as_the_covariance_says() -> None:
     data, rng = measured(), np.random.default_rng(4)
-    again = np.array([redraw(data, "std", rng).shape[1, 0] for _ in range(400)])
-    C = data.covariance_of(1, 0, np.arange(5))
-    assert C is not None
-    np.testing.assert_allclose(np.cov(again.T), C, atol=0.25 * C.max())
+    again = np.array([redraw(data, "std", rng).shape for _ in range(400)])
+    for k, r, sensors in ((1, 0, np.arange(5)), (0, 1, np.arange(4))):
+        C = data.covariance_of(k, r, sensors)
+        assert C is not None
+        np.testing.assert_allclose(np.cov(again[:, k, r, sensors].T), C, atol=0.25 * C.max())
 
 
 def test_the_posterior_takes_covariances_of_deviations_only() -> None:

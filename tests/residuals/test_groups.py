@@ -3,9 +3,11 @@
 import pickle
 from typing import Any
 
+import numpy as np
 import pytest
 
-from modefront.residuals.groups import KINDS, Group
+from modefront.data.modal import modal_data
+from modefront.residuals.groups import KINDS, Group, faults
 
 
 @pytest.mark.parametrize(
@@ -43,6 +45,8 @@ def test_equal_groups_are_equal_however_they_are_written() -> None:
 def test_kinds_may_be_given_by_position() -> None:
     assert Group("f", "all") == Group("f", frequency="all")
     assert Group("s", (), [2, 1]) == Group("s", shape=[2, 1])
+    whole = Group("w", [1], [2], [1, 3])
+    assert whole == Group("w", frequency=[1], shape=[2], subspace=[1, 3])
     with pytest.raises(ValueError, match=r"each of frequency, shape.* once at most"):
         Group("f", "all", frequency="all")
     with pytest.raises(ValueError, match=r"each of frequency, shape.* once at most"):
@@ -51,3 +55,29 @@ def test_kinds_may_be_given_by_position() -> None:
 
 def test_kinds_have_names_of_their_own() -> None:
     assert not {"name", "scale"} & set(KINDS)
+
+
+def test_faults_name_the_first_mode_of_each_kind_that_is_not_measured() -> None:
+    data = modal_data(
+        np.array([1.0, np.nan, 3.0]), np.ones((3, 2)) * [[1], [1], [np.nan]], ("a", "b")
+    )
+    wrong = Group("w", frequency=[1, 2, 9], shape=[3, 2])
+    assert list(faults(wrong, data)) == [
+        ("frequency", "one of the measured modes [1, 3]", "2"),
+        ("shape", "one of the measured modes [1, 2]", "3"),
+    ]
+    assert list(faults(wrong, None)) == []
+    assert [found for *_, found in faults(Group("e"), None)] == ["nothing"]
+    none = modal_data(np.full(3, np.nan), np.ones((3, 2)), ("a", "b"))
+    (fault,) = faults(Group("f", frequency="all"), none)
+    assert fault == ("", "at least one measured property", "none in the data")
+    std = Group("s", frequency=[1, 3], shape=[2], scale="std")
+    assert [key for key, *_ in faults(std, data)] == ["scale"] * 3
+    known = modal_data(
+        np.array([1.0, 2.0, 3.0]),
+        np.ones((3, 2)),
+        ("a", "b"),
+        frequency_std=np.array([1e-3, 1e-10, 1e-8]),
+    )
+    (fault,) = faults(Group("s", frequency="all", scale="std"), known)
+    assert fault[2] == "others for the frequency of mode 2"

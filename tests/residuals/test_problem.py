@@ -22,6 +22,7 @@ from modefront.pairing.match import Pairing, Pairs
 from modefront.residuals.base import Scale
 from modefront.residuals.groups import Group
 from modefront.residuals.problem import UpdatingProblem, updating_problem
+from modefront.residuals.shape import without_negligible
 from modefront.work.task import Costs
 
 FREQUENCY = np.array([4.646, 13.81, 19.48])
@@ -100,10 +101,11 @@ def test_second_derivatives_agree_with_50_digit_arithmetic(theta: list[float]) -
             return precise_objectives(moved)
 
         for i in range(4):
-            for k in range(4):
+            for k in range(i + 1):
                 corners = (J(i, k, 1, 1), J(i, k, -1, -1), J(i, k, 1, -1), J(i, k, -1, 1))
                 for n, (a, b, c, d) in enumerate(zip(*corners, strict=True)):
-                    error = abs(result.H[n, i, k] - float((a + b - c - d) / (4 * h**2)))
+                    both = np.array([result.H[n, i, k], result.H[n, k, i]])
+                    error = np.abs(both - float((a + b - c - d) / (4 * h**2))).max()
                     assert error <= 1e-8 * np.abs(result.H[n]).max()
 
 
@@ -282,8 +284,12 @@ def test_an_evaluation_without_derivatives_has_none() -> None:
         assert not result.residuals
         assert result.dJ.size == result.H.size == 0
     assert result.J.tolist() == [np.inf, np.inf]
-    J = problem.evaluate(problem.start, derivatives=False).J
-    assert J.tolist() == problem.evaluate(problem.start).J.tolist()
+    known, plain = (problem.evaluate(problem.start, derivatives=x) for x in (True, False))
+    assert plain.J.tolist() == known.J.tolist()
+    assert {*plain.quantities} == {*known.quantities}
+    for name, value in plain.quantities.items():
+        np.testing.assert_array_equal(value, known.quantities[name])
+    assert problem.modes(problem.start, derivatives=False)[0].derivatives is None
 
 
 def test_a_model_without_modes_is_infeasible_not_an_error() -> None:
@@ -342,6 +348,8 @@ def test_pairs_go_on_beyond_where_mac_values_change_them() -> None:
     there = beyond.quantities["paired_mode"]
     smooth = problem.continued(inside, beyond)
     assert smooth is not None
+    assert smooth.start.tolist() == problem.start.tolist()
+    assert smooth.objectives == ("frequencies", "shapes", "beyond")
     assert problem.continued(inside, inside) is None
     assert replace(problem, likelihood=LogSum(np.ones(2))).continued(inside, beyond) is None
     for x in seen:
@@ -359,7 +367,11 @@ def test_pairs_go_on_beyond_where_mac_values_change_them() -> None:
     middle, h = both.evaluate(beyond.theta), 1e-6
     np.testing.assert_array_equal(middle.J[:-1], smooth.evaluate(beyond.theta).J)
     assert middle.J[-1] < 0 < middle.J[-2]
-    assert not both.evaluate(beyond.theta, second=True).exact
+    second, own = both.evaluate(inside.theta, second=True), problem.evaluate(inside.theta)
+    assert not second.exact
+    assert not second.residuals
+    np.testing.assert_array_equal(both.evaluate(inside.theta).H[:2], own.H)
+    assert not second.H[2:].any()
     for j, step in enumerate(h * np.eye(4)):
         ahead, behind = (both.evaluate(beyond.theta + x).J for x in (step, -step))
         np.testing.assert_allclose((ahead - behind) / (2 * h), middle.dJ[:, j], atol=1e-6)
@@ -392,3 +404,18 @@ def test_modes_are_candidates_up_to_beyond_the_highest_measured_frequency(
     assert updating_problem(model, problem.data, ALL, *given, few).pairing is few
     shapes_alone = modal_data(np.full(3, np.nan), shapes, model.sensors)
     assert updating_problem(model, shapes_alone, ALL[1:], *given).pairing == Pairing(spare=3)
+
+
+def test_a_problem_says_how_large_it_is() -> None:
+    data = modal_data(np.array([FREQUENCY, FREQUENCY]), np.array([SHAPE, SHAPE]), FLOORS)
+    assert repr(problem_of(data)) == (
+        "UpdatingProblem(4 parameters, 3 modes at 3 sensors in 2 data sets, groups frequencies, "
+        "shapes)"
+    )
+    assert " in 1 data set, " in repr(problem_of(modal_data(FREQUENCY, SHAPE, FLOORS)))
+
+
+def test_deviations_that_are_rounding_become_the_median_of_the_others() -> None:
+    std = np.array([3.0, 0.0, 1e-12, 1.0, 2.5])
+    assert without_negligible(std).tolist() == [3.0, 2.5, 2.5, 1.0, 2.5]
+    assert without_negligible(1e-3 * std).tolist() == (1e-3 * without_negligible(std)).tolist()

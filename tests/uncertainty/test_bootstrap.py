@@ -9,7 +9,7 @@ import modefront as mf
 from modefront.errors import UnfinishedError
 from modefront.optim.sqp import given
 from modefront.plots.quantities import parameter_std
-from modefront.uncertainty.points import Role, SolvedPoint, redraw, solve_again
+from modefront.uncertainty.points import Role, SolvedPoint, edge_weights, redraw, solve_again
 
 OPEN = mf.Identifiability(models=0)
 
@@ -83,6 +83,60 @@ def test_a_level_that_does_not_hold_its_objective_is_solved_again_without_a_warn
     point = SolvedPoint("end", replace(start, weights=np.array([1.0, 0.0])), role)
     solved = solve_again(problem, [point], np.ones(2), "std", rng=np.random.default_rng(0))
     assert solved["end"].converged
+
+
+def test_points_of_all_kinds_are_solved_again_after_those_that_they_depend_on() -> None:
+    """Of data without errors what is found again is what was found, from a start far away."""
+    names = ("a", "b")
+    model = mf.chain(names, [1.0] * 3, [100.0] * 3, stiffness_parameters=["a", "b", "b"])
+    modes = model.modes(np.array([1.1, 0.9]), 3, derivatives=False)
+    f, phi = modes.frequency * [1.03, 0.97, 1.02], modes.phi.T + np.diag([0.1, 0.05, -0.1])
+    data = mf.modal_data(f, phi, model.sensors)
+    groups = mf.Group("f", frequency="all"), mf.Group("s", shape="all")
+    bounds = dict.fromkeys(names, (0.1, 10.0))
+    problem = mf.updating_problem(model, data, groups, bounds, dict.fromkeys(names, 1.0))
+    sizes, start = np.array([0.01, 2.0]), given(problem.evaluate(np.array([1.6, 0.7])))
+    w, beta = np.array([3.0, 0.5]), np.array([0.4, 0.6])
+    roles = {
+        "nbi": Role("boundary", ("f", "s")),
+        "das": Role("boundary", ("f", "s"), equations=True),
+        "end": Role("end", ("s",)),
+        "optimal": Role("optimal"),
+        "sum": Role("weights"),
+        "level": Role("level", objective=1, tolerance=0.02),
+        "f": Role("edge", objective=0),
+        "s": Role("edge", objective=1),
+    }
+    at = replace(start, weights=w, beta=beta)
+    points = [SolvedPoint(name, at, role) for name, role in roles.items()]
+    for source in ("std", "sets"):
+        rng = np.random.default_rng(0)
+        found = solve_again(problem, points, sizes, source, rng=rng)
+        assert [*found][-1] in ("nbi", "das", "end")
+        assert found["end"] is found["s"]
+        assert all(x.converged for name, x in found.items())
+        of = {
+            "f": edge_weights(0, sizes),
+            "s": edge_weights(1, sizes),
+            "sum": w,
+            "optimal": problem.properties / found["optimal"].J,
+        }
+        for name, weights in of.items():
+            slope, before = (weights @ x.evaluation.dJ for x in (found[name], start))
+            assert np.abs(slope).max() < 1e-4 * np.abs(before).max()
+        best, level = found["s"], found["level"]
+        assert level.J[1] == pytest.approx(1.02 * best.J[1], rel=1e-4)
+        assert level.J[0] < best.J[0]
+        edges = np.array([found["f"].J, found["s"].J])
+        least, most = np.diag(edges), np.diag(edges[::-1])
+        for name in ("nbi", "das"):
+            excess = (found[name].J - least) / (most - least) - beta[::-1]
+            assert np.ptp(excess) == pytest.approx(0, abs=1e-4)
+    assert edge_weights(0, sizes) == pytest.approx([1 / 0.01, 1e-4 / 2.0])
+    flat = [points[-1], SolvedPoint("same", at, Role("boundary", ("s", "s")))]
+    none = solve_again(problem, flat, sizes, "std", rng=np.random.default_rng(0))["same"]
+    assert none.theta.tolist() == start.theta.tolist()
+    assert not none.converged
 
 
 @pytest.mark.slow(3)

@@ -40,6 +40,13 @@ def test_one_group_of_linear_residuals_has_students_covariance() -> None:
     point, posterior = found_at(problem, np.array([40.0]))
     expected = point.J[0] / 40 * np.linalg.inv(A.T @ A)
     assert posterior.covariance == pytest.approx(expected, rel=1e-6)
+    C, z = 1e-4 * A, 1e-4 * y  # residuals in another unit
+    other = squares(lambda theta: [(C @ theta - z, C)], [-5, -5], [5, 5], 1)
+    same = found_at(other, np.array([40.0]))[1].covariance
+    assert same == pytest.approx(posterior.covariance, rel=1e-6)
+    lower, upper = ((point.theta + x).tolist() for x in (-1e-3, 1e-3))  # far within the scatter
+    near = squares(lambda theta: [(A @ theta - y, A)], lower, upper, 1)
+    assert found_at(near, np.array([40.0]))[1].covariance == pytest.approx(same, rel=1e-6)
     # The t distribution with a - 2 degrees of freedom has the greater variance J / (a - 4).
     t = point.J[0] / (40 - 4) * np.linalg.inv(A.T @ A)
     assert posterior.covariance == pytest.approx(t, rel=0.11)
@@ -133,7 +140,12 @@ def hill(theta: Floats) -> Residuals:
     return [(1 - (theta - 1) ** 2, -2 * (theta - 1) * np.eye(2))]
 
 
-@pytest.mark.parametrize("function", [exact_fit, hill])
+def saddle(theta: Floats) -> Residuals:
+    x, y = theta
+    return [(np.array([1 - (x - 1) ** 2, y - 1]), np.array([[-2 * (x - 1), 0], [0, 1]]))]
+
+
+@pytest.mark.parametrize("function", [exact_fit, hill, saddle])
 def test_there_is_no_posterior_without_a_regular_minimum(
     function: Callable[[Floats], Residuals],
 ) -> None:

@@ -1,6 +1,7 @@
 """Sources of error: derivatives with respect to data, and the variance of means over data sets."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -46,6 +47,46 @@ def test_where_the_uncertainty_comes_from() -> None:
     assert available(bare) == ("sets",)
     f, phi = bare.frequency[:1], bare.shape[:1]
     assert available(mf.modal_data(f, phi, MODEL.sensors)) == ()
+    part = np.where(np.arange(3) < 2, bare.shape, np.nan)  # shapes alone, at two sensors
+    unknown = replace(bare, frequency=np.nan * bare.frequency, shape=part)
+    assert available(unknown) == ("sets",)
+    assert available(replace(unknown, shape_std=0.1 * np.abs(part))) == ("std", "sets")
+    shifted = part.copy()
+    shifted[0, :2], shifted[1, 2] = np.nan, np.nan  # no mode in both sets
+    assert available(replace(unknown, shape=shifted)) == ()
+    assert mf.Uncertainty().of(data) == "std"
+    assert mf.Uncertainty("sets").of(data) == "sets"
+    assert mf.Uncertainty("none").of(data) is None
+    assert mf.Uncertainty().of(replace(unknown, shape=shifted)) is None
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"bootstrap": -1}, "bootstrap"),
+        ({"draws": 10**6 + 1}, "draws"),
+        ({"source": "both"}, "source"),
+        ({"source": "none", "bootstrap": 5}, "bootstrap: expected 0 with source = 'none', found 5"),
+    ],
+)
+def test_samples_of_no_source_and_of_no_size_are_refused(
+    options: dict[str, Any], message: str
+) -> None:
+    with pytest.raises(mf.InputError, match=message):
+        mf.Uncertainty(**options)
+
+
+def test_what_data_do_not_have_is_a_fault() -> None:
+    bare = mf.modal_data(np.array([1.0]), np.ones((1, 3)), MODEL.sensors)
+    for options, expected in (
+        ({"source": "std"}, "source: expected standard deviations above 0"),
+        ({"source": "sets"}, "source: expected a mode measured in two data sets"),
+        ({"bootstrap": 3}, "bootstrap: expected 0, or data with standard deviations"),
+    ):
+        asked: Any = mf.Uncertainty(**options)
+        with pytest.raises(mf.InputError, match=expected):
+            asked.of(bare)
+    assert [*mf.Uncertainty().faults(bare)] == []
 
 
 @pytest.mark.parametrize("scale", ["measured", "std"])
@@ -74,14 +115,15 @@ def test_standard_deviations_are_carried_by_exact_derivatives(scale: Scale) -> N
         assert dJ == pytest.approx((first.dJ - other.dJ) / (2 * step), rel=1e-5, abs=1e-8)
 
 
-def test_data_sets_scatter_as_the_mean_of_their_objectives() -> None:
+@pytest.mark.parametrize("sets", [2, 5])
+def test_data_sets_scatter_as_the_mean_of_their_objectives(sets: int) -> None:
     """Without gaps, J is the mean of the objectives of single sets: so is its variance."""
-    data = measured(5)
+    data = measured(sets)
     data.frequency[0, 2], data.shape[-1, 1, 2] = 20.0, 0.1
     problem = problem_of(data, "measured")
     result = noise(problem, *problem.modes(THETA), "sets")
     single = []
-    for k in range(5):
+    for k in range(sets):
         changed = replace(
             data,
             **{
@@ -93,10 +135,10 @@ def test_data_sets_scatter_as_the_mean_of_their_objectives() -> None:
         single.append(problem_of(changed, "measured").evaluate(THETA))
     J = np.array([evaluation.J for evaluation in single])
     assert J.mean(axis=0) == pytest.approx(problem.evaluate(THETA).J)
-    assert result.J.T @ result.J == pytest.approx(np.cov(J.T) / 5)
+    assert result.J.T @ result.J == pytest.approx(np.cov(J.T) / sets)
     slopes = np.array([evaluation.dJ.ravel() for evaluation in single])
-    flat = result.dJ.reshape(5, -1)
-    assert flat.T @ flat == pytest.approx(np.cov(slopes.T) / 5, rel=1e-9, abs=1e-15)
+    flat = result.dJ.reshape(sets, -1)
+    assert flat.T @ flat == pytest.approx(np.cov(slopes.T) / sets, rel=1e-9, abs=1e-15)
 
 
 def test_a_mode_measured_once_counts_as_exact() -> None:

@@ -1,17 +1,26 @@
 """Errors with a prior: counts, scatter and the most probable model against closed forms."""
 
 from dataclasses import replace
+from typing import Literal
 
 import numpy as np
 import pytest
 import scipy.integrate
+import scipy.stats
 
 import modefront as mf
 from modefront._typing import Floats
 from modefront.errors import InputError
 from modefront.residuals.problem import UpdatingProblem
 from modefront.uncertainty.inference import log_values, most_probable
-from modefront.uncertainty.prior import PULL, NoisePrior
+from modefront.uncertainty.prior import (
+    PULL,
+    Distance,
+    NoisePrior,
+    Standardised,
+    expected,
+    prior_widths,
+)
 from modefront.work.task import IMMEDIATE
 
 FREQUENCY = np.array([4.9, 14.1, 19.9])
@@ -151,3 +160,114 @@ def test_weight_zero_expects_nothing() -> None:
     for frequency in (0, 0.5):  # as a per cent
         with pytest.raises(InputError, match="such as 0"):
             NoisePrior(frequency=frequency)
+
+
+PRIORS = (None, mf.Prior("normal", 0.2), mf.Prior("lognormal", 0.3))
+
+
+def test_the_distance_from_the_nominal_model_is_in_the_units_of_priors() -> None:
+    """A uniform prior counts as a normal one of so many ranges; all derivatives are exact."""
+    problem, theta, h = replace(problem_of(), priors=PRIORS), np.array([0.8, 1.3, 0.7]), 1e-5
+    for known in (problem, replace(problem, start=np.array([0.9, 1.1, 1.2]))):
+        distance, centre = Distance(known, 12.0), known.start
+        r, dr, d2r = distance.residuals(theta)
+        ratio = np.log(theta[2] / centre[2]) / 0.3
+        away = theta - centre
+        assert r == pytest.approx([np.sqrt(12.0) * away[0] / 2.7, away[1] / 0.2, ratio])
+        ahead, behind = (distance.residuals(theta + s) for s in (h, -h))
+        assert dr == pytest.approx((ahead[0] - behind[0]) / (2 * h), rel=1e-8)
+        assert d2r == pytest.approx((ahead[1] - behind[1]) / (2 * h), rel=1e-6, abs=1e-9)
+        at = distance.evaluation(known, theta, True, True)
+        plain = known.evaluate(theta, second=True)
+        assert at.J[:-1].tolist() == plain.J.tolist()
+        assert at.J[-1] == pytest.approx(r @ r)
+        assert distance.evaluation(known, theta, False, False).J == pytest.approx(at.J)
+        for j, step in enumerate(h * np.eye(3)):
+            one, other = (distance.evaluation(known, theta + x, True, True) for x in (step, -step))
+            assert at.dJ[:, j] == pytest.approx((one.J - other.J) / (2 * h), rel=1e-6, abs=1e-8)
+            assert at.H[-1, j] == pytest.approx(
+                (one.dJ - other.dJ)[-1] / (2 * h), rel=1e-6, abs=1e-8
+            )
+        rough = distance.evaluation(known, theta, True, False)
+        assert rough.H[-1] == pytest.approx(2 * np.diag(dr**2))
+        assert rough.residuals[-1].dr == pytest.approx(np.diag(dr))
+        assert rough.gauss_newton[-1] == pytest.approx(rough.H[-1])
+    nowhere = distance.evaluation(known, np.array([1.0, -5.0, 1.0]), True, False)
+    assert not nowhere.feasible
+
+
+def test_the_precision_is_that_of_residuals_and_priors() -> None:
+    noise = NoisePrior().of(replace(problem_of(), priors=PRIORS), None)
+    assert noise is not None
+    theta = np.array([0.9, 1.1, 1.2])
+    found = noise.problem.evaluate(theta)
+    w = (noise.a + 4) / (found.J + 4)
+    G = sum(v * x.dr.T @ x.dr for v, x in zip(w, found.residuals, strict=True))
+    own = np.diag([12 / 2.7**2, 1 / 0.2**2, 1 / (0.3 * 1.2) ** 2])
+    assert noise.precision(found) == pytest.approx(G + own, rel=1e-9)
+    far = replace(noise, S=np.array([0.5, 2.0]), level=np.array([4.0, 0.25]))
+    expected = np.sqrt([(7.0 - 0.5) / (3 * 4.0), (3.0 - 2.0) / (6 * 0.25)])
+    assert far.over_expected(np.array([7.0, 3.0])) == pytest.approx(expected)
+    assert far.over_expected(np.array([0.4, 3.0]))[0] == 0
+
+
+def test_standardised_residuals_have_the_derivatives_of_their_values() -> None:
+    of, z, h = Standardised(replace(problem_of(), priors=PRIORS)), np.array([0.3, -0.5, 1.1]), 1e-5
+    at = of.evaluate(z)
+    assert at.J[-1] == pytest.approx(z @ z)
+    assert at.J[:-1] == pytest.approx(of.problem.evaluate(of.theta(z)[0]).J)
+    assert of.evaluate(z, derivatives=False).J == pytest.approx(at.J)
+    for j, step in enumerate(h * np.eye(3)):
+        one, other = (of.evaluate(z + x) for x in (step, -step))
+        assert at.dJ[:, j] == pytest.approx((one.J - other.J) / (2 * h), rel=1e-6, abs=1e-7)
+        for x, ahead, behind in zip(at.residuals, one.residuals, other.residuals, strict=True):
+            assert x.dr[:, j] == pytest.approx((ahead.r - behind.r) / (2 * h), rel=1e-6, abs=1e-7)
+    assert at.H == pytest.approx(np.array([2 * x.dr.T @ x.dr for x in at.residuals]))
+    far = of.evaluate(np.full(3, 99.0))
+    assert far.theta.tolist() == of.upper.tolist()
+    assert of.theta(far.theta)[0] == pytest.approx([3.0, 3.0, 3.0])
+
+
+def test_widths_of_priors_are_those_of_their_distributions_between_the_bounds() -> None:
+    widths = [0.9 * 2.7]
+    for prior in PRIORS[1:]:
+        assert prior is not None
+        is_log = prior.kind == "lognormal"
+        ends = (np.log([0.3, 3.0]) if is_log else np.array([-0.7, 2.0])) / prior.std
+        x = prior.std * scipy.stats.truncnorm(*ends).ppf([0.05, 0.95])
+        widths.append(float(np.ptp(np.exp(x) if is_log else x)))
+    problem = replace(problem_of(), priors=PRIORS)
+    assert prior_widths(problem) == pytest.approx(widths, rel=1e-4)
+
+
+@pytest.mark.parametrize("source", ["std", "sets"])
+def test_expected_deviations_are_those_of_the_data_or_assumed_value_by_value(
+    source: Literal["std", "sets"],
+) -> None:
+    """Those of means over the sets in which a mode was measured: sums, not means, of squares."""
+    rng, sizes = np.random.default_rng(0), {"frequency": 0.01, "shape": 0.05}
+    f, phi = rng.uniform(5, 9, (3, 2)), rng.uniform(0.2, 1, (3, 2, 4))
+    f[0, 1], phi[1, 0], phi[2, 1, 2:] = np.nan, np.nan, np.nan
+    f_std, phi_std = 0.02 * f, 0.03 * phi
+    f_std[1, 1], f_std[2, 0] = np.nan, 3e-9
+    phi_std[0, 1], phi_std[2, 0, 1], phi_std[0, 0, 3] = 0.0, 0.0, np.nan
+    given = mf.modal_data(f, phi, ("a", "b", "c", "d"), frequency_std=f_std, shape_std=phi_std)
+    found = expected(given, sizes, source)
+    shapes = [x[np.isfinite(x)] for x in phi.reshape(-1, 4) if np.isfinite(x).any()]
+    ratio = np.sqrt(np.mean([x.max() ** 2 / np.mean(x**2) for x in shapes]))
+    for k, r in np.ndindex(3, 2):
+        if np.isfinite(f[k, r]):
+            known = source == "std" and f_std[k, r] > 1e-9 * f[k, r]
+            std = f_std[k, r] if known else 0.01 * f[k, r]
+            many = np.isfinite(f[:, r]).sum()
+            assert found.frequency_std[k, r] == pytest.approx(std / np.sqrt(many))
+        here = np.isfinite(phi[k, r])
+        assert np.isnan(found.shape_std[k, r, ~here]).all()
+        if here.any():
+            own = np.nan_to_num(phi_std[k, r, here])
+            positive = own > 0
+            size = np.where(positive, own, np.median(own[positive])) if positive.any() else own
+            if source == "sets" or not positive.any():
+                size = np.full(here.sum(), 0.05 * ratio * np.sqrt(np.mean(phi[k, r, here] ** 2)))
+            many = np.isfinite(phi[:, r]).any(axis=1).sum()
+            assert found.shape_std[k, r, here] == pytest.approx(size / np.sqrt(many))

@@ -412,8 +412,11 @@ def test_chains_end_at_half_their_length_where_each_stays_where_it_is(
     monkeypatch.setattr("modefront.uncertainty.sampling.agreement", apart)
     monkeypatch.setattr("modefront.uncertainty.sampling.ROUND", 5)
     noise = noise_of(flat, [-2, -2], [2, 3], [1.0])
-    found = draw_models(noise, [np.array([0.4, 0.0])], 5 * CHAINS, 1, IMMEDIATE)
+    work = Noting()
+    found = draw_models(noise, [np.array([0.4, 0.0])], 5 * CHAINS, 1, work)
     assert (len(calls), found.settled) == (rounds, False)
+    assert calls == [(CHAINS, 5 * (k + 1), 2) for k in range(rounds)]
+    assert work.done == 1 + (1 + rounds) * CHAINS + CHAINS, "the peak, the warm-up, and weights"
     assert found.theta.shape == (5 * CHAINS, 2)
 
 
@@ -451,6 +454,7 @@ def test_draws_in_a_poor_basis_are_weighted(
     monkeypatch.setattr("modefront.uncertainty.sampling._nearer", lambda *_: poor)
     found = draw_models(exact, [np.array([0.1, 0.5])], count, 8, IMMEDIATE)
     assert found.settled == (std == 0.2)
+    assert found.effective.max() < 0.95 * count
     if found.settled:
         known = scipy.stats.truncnorm(-0.5, 4.5, loc=0.1, scale=0.2)
         assert scipy.stats.kstest(found.theta[:, 0], known.cdf).pvalue > 0.01

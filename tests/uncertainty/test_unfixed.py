@@ -12,7 +12,9 @@ from modefront.uncertainty.inference import (
     contradicted,
     excluding,
     most_probable,
+    refused,
     unfixed,
+    wider,
 )
 from modefront.uncertainty.prior import NoisePrior
 from modefront.work.task import IMMEDIATE, counted
@@ -72,7 +74,7 @@ def test_the_verdict_says_what_to_write() -> None:
     assert results.attrs["fixed_parameter"] == "k2"
 
 
-@pytest.mark.parametrize(("std", "away"), [(0.1, 5.0), (0.4, 0.0)])
+@pytest.mark.parametrize(("std", "away"), [(0.1, 5.0), (0.15, 3.3), (0.2, 0.0), (0.4, 0.0)])
 def test_a_prior_that_the_data_contradict_is_named(std: float, away: float) -> None:
     problem = problem_of(np.array([0.9, 1.0, 1.5, 1.0, 1.2]), 1)
     priors = (None, mf.Prior("normal", std), mf.Prior("lognormal", 0.3))
@@ -140,3 +142,16 @@ def test_trials_are_the_same_in_a_basis_and_in_full() -> None:
     assert reduced[1] == pytest.approx(full[1], rel=1e-6)
     assert reduced[2] == pytest.approx(full[2], abs=1e-5)
     assert costs.eigenproblems < 10
+
+
+def test_wider_bounds_are_one_range_or_one_ratio_farther_away() -> None:
+    below, above = wider(np.array([0.5, -1.0, 0.0, 2.0]), np.array([2.0, 3.0, 4.0, 6.0]))
+    assert below.tolist() == pytest.approx([0.125, -5.0, -4.0, 2 / 3])
+    assert above.tolist() == pytest.approx([8.0, 7.0, 8.0, 18.0])
+
+
+def test_models_far_from_the_data_or_worse_than_the_nominal_one_are_refused() -> None:
+    misfit, nominal = np.array([11.0, 2.3, 2.3, 1.9, 9.9]), np.array([1.0, 2.0, 2.2, 1.0, 11.0])
+    far, worse = refused(misfit, nominal)
+    assert far.tolist() == [True, False, False, False, False]
+    assert worse.tolist() == [False, True, False, False, False]

@@ -10,6 +10,7 @@ from problems import Derivatives, Known, box, many_minima
 
 from modefront._typing import Floats
 from modefront.front.front import Edge, Front
+from modefront.front.gaps import Gap
 from modefront.front.point import Kind, Point
 from modefront.front.simplex import payoff
 from modefront.front.subproblems import LatticePoint
@@ -153,3 +154,23 @@ def test_another_model_that_fits_as_well_is_a_rival(
     point, none = SolvedPoint("edge-J1", best, Role("edge", objective=0)), np.zeros((1, 2))
     chosen = Scatter(none, np.array([[0.0, std]]), none.T, ())
     assert tuple(doubts(front, point, chosen, np.ones(2), np.ones(2))) == expected
+
+
+@pytest.mark.parametrize(
+    ("std", "known", "doubtful"), [(0.9, 2, False), (1.1, 2, True), (1.1, 1, False)]
+)
+def test_a_point_whose_scatter_reaches_the_end_of_a_branch_is_doubtful(
+    std: float, known: int, doubtful: bool
+) -> None:
+    """The branch ends one farther in both objectives, and the next begins three away."""
+    at = begin(Evaluation(np.zeros(1), np.array([2.0, 5.0])))
+    near, far = (begin(Evaluation(np.zeros(1), at.J + x)) for x in ([-1.0, 1.0], [-3.0, 3.0]))
+    gap = Gap(1.5, far, near if known == 2 else None)
+    front = Front("nbi", [], [], [], None, (False, False), None, [gap])
+    at = replace(at, status=Status.CONVERGED)
+    none = np.zeros((1, 1))
+    scattered = Scatter(none, np.array([[std, -0.6 * std], [0.0, 0.8 * std]]), none.T, ())
+    expected = (LinearisationWarning.ENDS,) if doubtful else ()
+    for role, said in ((Role("boundary"), expected), (Role("weights"), ())):
+        point = SolvedPoint("x", at, role)
+        assert tuple(doubts(front, point, scattered, np.ones(2), np.ones(2))) == said

@@ -66,7 +66,7 @@ class Lexicographic:
             return True
         dr = evaluation.residuals[self.objective].dr * (problem.upper - problem.lower)
         sigma = np.linalg.svd(dr, compute_uv=False)
-        rank = int((sigma > RANK * sigma.max(initial=np.finfo(float).tiny)).sum())
+        rank = int((sigma > RANK * sigma.max()).sum())
         return rank < evaluation.theta.size
 
     def solve(self, problem: Problem, start: Solution, known: Solution | None = None) -> Solution:
