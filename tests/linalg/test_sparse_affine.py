@@ -48,6 +48,9 @@ def test_same_as_dense(case: tuple[int, int, int, int]) -> None:
     assert sparse.derivatives_times(theta, V) == pytest.approx(expected, abs=1e-12)
     rows = sparse.derivative_rows(theta, V).toarray().reshape(3, case[2], case[0])
     assert rows == pytest.approx(expected.transpose(1, 2, 0), abs=1e-12)
+    given = theta, V, rng.standard_normal((case[0], 2, 4)), np.array([1, 0, 1])
+    forms = [X.derivative_forms(*given) for X in (sparse, dense)]
+    assert forms[0] == pytest.approx(forms[1], abs=1e-12)
     thetas = rng.uniform(0.5, 2.0, (3, case[2]))
     each = [dense.at(position) @ v for position, v in zip(thetas, V.T, strict=True)]
     assert sparse.each(thetas, V) == pytest.approx(np.transpose(each), abs=1e-12)

@@ -156,6 +156,40 @@ def test_second_derivatives_are_those_of_all_modes(
         assert np.abs(found - known).max() <= tolerance * np.abs(known).max()
 
 
+@pytest.mark.parametrize(("clamped", "split"), [(True, 1e-4), (False, 1e-2)])
+def test_many_second_derivatives_take_a_factor_a_mode(clamped: bool, split: float) -> None:
+    """It costs more than some solutions with the factors at hand, and less than hundreds."""
+    one, theta, made = lattice(8, 4, 3, clamped=clamped), np.array([1.0, 1.3, 0.8]), list[int]()
+    K, M = (
+        sparse_affine(
+            [scipy.sparse.block_diag((T, factor * T)).tocoo() for T in _terms(A)],
+            A.coefficients,
+            2 * A.size,
+        )
+        for A, factor in zip(one, (1 + split, 1.0), strict=True)
+    )
+    first = 0 if clamped else 12  # rigid-body modes
+    rng = np.random.default_rng(0)
+    S, v = rng.standard_normal((5, K.size)), rng.standard_normal((60, 5, first + 4))
+    v[:, :, :first] = 0
+    w = np.where(v.any(axis=1), rng.standard_normal((60, 1)), 0)
+    engine = pencil(K, M, lambda: made.append(1))
+    modes = sparse.modes(engine, scipy.sparse.csr_array(S), theta, first + 4, True)
+    expected = dense.modes(K.dense(), M.dense(), S, theta, first + 4, True)
+    sign = np.sign(np.sum(modes.phi * expected.phi, axis=0))
+    before = len(made)
+    few, known = modes.second_derivatives(w[:1], v[:1]), expected.second_derivatives(w, v * sign)
+    assert len(made) == before
+    many = modes.second_derivatives(w, v)
+    assert len(made) == before + 4
+    assert few is not None
+    assert many is not None
+    assert known is not None
+    scale = np.abs(known).max()
+    assert np.abs(many[:1] - few).max() <= 1e-10 * scale
+    assert np.abs(many - known).max() <= 1e-8 * scale
+
+
 @pytest.mark.parametrize("split", [1e-2, 1e-4, 0.0])
 def test_close_and_repeated_modes(split: float) -> None:
     K, M = network(20, 1, massless=0.3, free=False)

@@ -154,6 +154,14 @@ class DenseAffine:
         products = self.terms @ vectors
         return first_axis(self.coefficients.jacobian(theta).T, products).transpose(1, 2, 0)
 
+    def derivative_forms(self, theta: Floats, left: Floats, right: Floats, of: Ints) -> Floats:
+        """Return v_k^T dA/dtheta_i R, R the matrix of[k], for vectors v: (m, parameters, columns).
+
+        ``left`` are the vectors (N, m), ``right`` the matrices (N, matrices, columns).
+        """
+        rows = self.derivatives_times(theta, left).transpose(1, 2, 0)
+        return np.asarray(rows @ right.transpose(1, 0, 2)[of])
+
     def second_derivatives(self, theta: Floats, left: Floats, right: Floats) -> Floats:
         """Return sum_m left_m^T (d2A / dtheta_i dtheta_k) right_m for each row of left, (n, p, p).
 
@@ -235,10 +243,8 @@ class SparseAffine:
 
     def derivatives_times(self, theta: Floats, vectors: Floats) -> Floats:
         """Return dA/dtheta_i V for vectors V of shape (N, m); the result is (N, m, parameters)."""
-        out = np.zeros((*vectors.shape, self.coefficients.exponents.shape[1]))
-        for i, dof, rows in self._derivative_parts(theta, vectors):
-            out[_place(dof), :, i] += rows
-        return out
+        rows, m = self.derivative_rows(theta, vectors).toarray(), vectors.shape[1]
+        return np.ascontiguousarray(rows.reshape(m, theta.size, self.size).transpose(2, 0, 1))
 
     def derivative_rows(self, theta: Floats, vectors: Floats) -> csr_array:
         """Return the same products as rows (vector, parameter), sparse: (m * parameters, N).
@@ -246,14 +252,25 @@ class SparseAffine:
         The row of vector r and parameter i is r * parameters + i. A term that touches few
         degrees of freedom costs as little.
         """
-        m, p = vectors.shape[1], self.coefficients.exponents.shape[1]
+        (stack, dof, _), dc, m = self._stack, self.coefficients.jacobian(theta), vectors.shape[1]
         rows, columns, values = [np.zeros(0, np.intp)], [np.zeros(0, np.intp)], [np.zeros(0)]
-        for i, dof, some in self._derivative_parts(theta, vectors):
-            rows.append(np.repeat(np.arange(m) * p + i, dof.size))
-            columns.append(np.tile(dof, m))
-            values.append(some.T.ravel())
+        products = times(stack, vectors) if dc.any() else vectors[:0]
+        for j, some in self._pieces(FEW):
+            for i in np.flatnonzero(dc[j]):
+                rows.append(np.repeat(np.arange(m) * theta.size + i, dof[some].size))
+                columns.append(np.tile(dof[some], m))
+                values.append(dc[j, i] * products[some].T.ravel())
         entries = np.concatenate(rows), np.concatenate(columns)
-        return csr_array((np.concatenate(values), entries), shape=(m * p, self.size))
+        return csr_array((np.concatenate(values), entries), shape=(m * theta.size, self.size))
+
+    def derivative_forms(self, theta: Floats, left: Floats, right: Floats, of: Ints) -> Floats:
+        """Return the same as `DenseAffine.derivative_forms`, without what a term does not touch."""
+        stack, dof, starts = self._stack
+        products, forms = times(stack, left), np.zeros((starts.size - 1, of.size, right.shape[2]))
+        for j, rows in self._pieces(FEW):
+            matrices = right[_place(dof[rows])].transpose(1, 0, 2)[of]
+            forms[j] += (products[rows].T[:, None] @ matrices)[:, 0]
+        return first_axis(self.coefficients.jacobian(theta).T, forms).transpose(1, 0, 2)
 
     def second_derivatives(self, theta: Floats, left: Floats, right: Floats) -> Floats:
         """Return the same as `DenseAffine.second_derivatives`."""
@@ -264,16 +281,6 @@ class SparseAffine:
         for j, rows in self._pieces(FEW):
             forms[:, j] += np.einsum("krm,rm->k", left[:, dof[rows]], products[rows])
         return self.coefficients.second_derivatives(theta, forms)
-
-    def _derivative_parts(
-        self, theta: Floats, vectors: Floats
-    ) -> Iterator[tuple[int, Ints, Floats]]:
-        """Yield, part by part, parameters i, degrees of freedom and their rows of dA/dtheta_i V."""
-        (stack, dof, _), dc = self._stack, self.coefficients.jacobian(theta)
-        products = times(stack, vectors) if dc.any() else vectors[:0]
-        for j, rows in self._pieces(FEW):
-            for i in np.flatnonzero(dc[j]):
-                yield int(i), dof[rows], dc[j, i] * products[rows]
 
     def each(self, thetas: Floats, vectors: Floats) -> Floats:
         """Return A(theta_k) v_k for every row of thetas (m, p) and column of vectors (N, m)."""

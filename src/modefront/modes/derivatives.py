@@ -8,13 +8,17 @@ found on the way: only what c sees is formed, for all r at once. The condition n
 :math:`1 + \tau_r / (\lambda - \sigma)` for :math:`\lambda` beyond the known modes: each mode takes
 the factor that makes it smallest. The form is symmetric, so b may be the forces (direct) or the
 sensors (adjoint, one solution for all modes), whichever is expected to need fewer solutions.
+
+Second derivatives need all of every solution. Where there are so many forces that a factor costs
+less than the iterations, each mode has one of its own, of :math:`K - \lambda_r M`, with which a
+solution takes no iteration.
 """
 
 from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import csr_array, dia_array, eye_array
+from scipy.sparse import csr_array, dia_array, eye_array, vstack
 
 from modefront._typing import Bools, Floats, Ints
 from modefront.errors import ModelError
@@ -94,18 +98,34 @@ def everywhere(
     """Return one mode with adjoints at all DOFs; raises ModelError where the iteration fails."""
     pencil, theta = spectrum.pencil, spectrum.theta
     k, p, phi = int(r[0]), theta.size, spectrum.Phi[:, r]
-    dM_phi = pencil.M.derivatives_times(theta, phi)[:, 0]
-    force = pencil.K.derivatives_times(theta, phi)[:, 0] - spectrum.lam[k] * dM_phi
-    right = np.hstack([force, sensors.T @ b])
+    dM = pencil.M.derivative_rows(theta, phi)
+    force = pencil.K.derivative_rows(theta, phi) - spectrum.lam[k] * dM
+    right = vstack([force, csr_array(b.T @ sensors)], format="csr")
     gap = np.where(_same(spectrum)[:, k], np.inf, spectrum.lam - spectrum.lam[k])
-    out = combine(spectrum.Phi, gram(spectrum.Phi, right) / gap[:, None])
-    nearest, _steps = _nearest(spectrum, count)
+    out = combine(spectrum.Phi, (right @ spectrum.Phi / gap).T)
+    nearest, steps = _nearest(spectrum, count)
     shifted, identity = spectrum.factors[nearest[k]], eye_array(len(phi)).tocsr()
+    # A factor costs about as many solutions as its columns have entries.
+    if steps[k] * right.shape[0] > pencil.analysis.factor_nnz / pencil.size:
+        shifted = _pinned(spectrum, k)
     tau = np.array([[shifted.sigma - spectrum.lam[k]]])
-    for some, columns in _chunks(right.T):
+    for some, columns in _chunks(right):
         out[:, some] += _forms(shifted, spectrum, columns, tau, identity)[:, 0]
-    dphi = -out[:, :p] - 0.5 * phi * gram(phi, dM_phi)
+    dphi = -out[:, :p] - 0.5 * phi * (dM @ phi).T
     return phi, dphi[:, None], out[:, p:]
+
+
+def _pinned(spectrum: Spectrum, k: int) -> Factorisation:
+    """Return the factor of K - lam_k M with a spring where mode k moves most.
+
+    Forces that do no work on the mode leave the spring at rest, as all forces together would do
+    work on it otherwise: the solution is one without a spring, and holds some of the mode.
+    """
+    K, M = (A.at(spectrum.theta) for A in (spectrum.pencil.K, spectrum.pencil.M))
+    dof = int((spectrum.Phi[:, k] * spectrum.MPhi[:, k]).argmax())
+    row = slice(K.indptr[dof], K.indptr[dof + 1])
+    K.data[row][K.indices[row] == dof] *= 2
+    return spectrum.pencil.factor(K.data, M.data, float(spectrum.lam[k]))
 
 
 def outside(sensors: csr_array, force: csr_array, spectrum: Spectrum, count: int) -> Floats:
@@ -168,6 +188,8 @@ def _forms(
     dual = right - combine(spectrum.MPhi, gram(spectrum.Phi, right))
     W = shifted.solve(dual)
     W -= combine(spectrum.Phi, gram(spectrum.MPhi, W))  # on the M-complement of the known modes
+    if not tau.any():  # that is the solution
+        return (left @ W)[:, None]
     first = beta = _norm(W, dual)
     Q_old, dual_old = np.zeros_like(W), np.zeros_like(W)
     lower = np.zeros((tau.shape[0], beta.size))

@@ -72,16 +72,17 @@ class SecondDerivatives:
         (N, m, p), mode = dPhi.shape, np.append(np.arange(r.size), owner)
         vectors, dlam = np.hstack([Phi, -Z]), modes.dlam[r[mode]]
         MdPhi = (mass @ dPhi.reshape(N, -1)).reshape(N, m, p)
-        left, change = self.K.derivatives_times(self.theta, vectors), MdPhi
+        forms = self.K.derivative_forms(self.theta, vectors, dPhi, mode)
+        inner = 0.5 * MdPhi.transpose(1, 2, 0) @ dPhi.transpose(1, 0, 2)
         c = np.zeros((mode.size, p))
+        c[m:] = np.einsum("nk,nki->ki", Z, MdPhi[:, owner])
         if self.M.coefficients.varies:
-            dM = self.M.derivatives_times(self.theta, vectors)
-            left = left - modes.lam[r[mode], None] * dM
-            c[:m] = -0.5 * np.einsum("nr,nri->ri", Phi, dM[:, :m])
-            change = MdPhi + dM[:, :m]
-        c[m:] = np.einsum("nk,nki->ki", Z, change[:, owner])
-        left[:, m:] -= s[:, None] * (change - 0.5 * MdPhi)[:, owner]
-        forms = left.transpose(1, 2, 0) @ dPhi[:, mode].transpose(1, 0, 2)
+            right = np.concatenate([dPhi, Phi[:, :, None]], axis=2)
+            of_mass = self.M.derivative_forms(self.theta, vectors, right, mode)
+            forms -= modes.lam[r[mode], None, None] * of_mass[:, :, :p]
+            inner += of_mass[:m, :, :p]
+            c -= np.append(np.full(m, 0.5), np.ones(owner.size))[:, None] * of_mass[:, :, p]
+        forms[m:] -= s[:, None, None] * inner[owner]
         weights = np.hstack([w, np.arange(len(w))[:, None] == of])
         T = first_axis(weights, forms) + dlam.T @ (weights[:, :, None] * c)
         out: Floats = T + T.transpose(0, 2, 1)
