@@ -123,16 +123,13 @@ class FrontAnalysis:
 
     identifiable: Identifiable
     tolerance: float  # the share within which objectives count as the same in a flat part
-    # of equivalent models, by group or method; ``twin`` of one is a position in what `followed`
-    # returns
+    # of equivalent models, by group or method; ``twin`` is a position in what `followed` returns
     manifolds: Sequence[tuple[str, Sequence[Manifold]]]
-    # where the uncertainty of the data is taken from; None where it is not known
-    source: Source | None
+    source: Source | None  # of the uncertainty of the data; None where that is not known
     scatter: Mapping[str, Scatter]  # of the points by that uncertainty, by label
     # derivatives of predicted quantities at points, by label and quantity
     slopes: Mapping[str, Mapping[str, Floats]]
-    # of the parameters around the optimally weighted model, where it is the reference and there is
-    # one
+    # of the parameters around the optimally weighted model, where that is the reference
     posterior: Posterior | None
     # the points solved again with data drawn again, by label
     replicates: Sequence[Mapping[str, Solution]]

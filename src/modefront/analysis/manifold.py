@@ -91,9 +91,7 @@ class Manifold:
     models: Sequence[Evaluation]
     extent: Extent  # how far it was followed
     evaluations: int = 0  # what that took
-    # position, among the manifolds that were known before, of the same one; None where it was not
-    # known
-    twin: int | None = None
+    twin: int | None = None  # position of the same one among those known before, if it is there
 
 
 @dataclass(frozen=True)

@@ -22,8 +22,7 @@ class Edge:
     minima: Sequence[Solution]
     starts: int = 0  # number of random models from which the least objective was sought
     found: int = 0  # number of different minima to which they led
-    # whether fewer than two of them led to the edge, and unseen minima are likely
-    doubtful: bool = False
+    doubtful: bool = False  # whether fewer than two led to it, and unseen minima are likely
 
 
 # 13 fields: everything that a search leaves, which tasks keep as one record.
@@ -34,13 +33,10 @@ class Front:
     method: str  # by which the front was found
     points: Sequence[Point]  # points along the front, then edges and weighted models
     edges: Sequence[Edge]  # the edge of each objective with its other minima
-    # all minima of the optimally weighted residuals that are accepted, best first
-    optimal: Sequence[Solution]
-    # fixed point of the iteration of the weights; None where it met a singularity
-    iterated: Solution | None
+    optimal: Sequence[Solution]  # accepted minima of optimally weighted residuals, best first
+    iterated: Solution | None  # fixed point of the weights; None where they met a singularity
     exact: tuple[bool, ...]  # (n,) whether a model fits the objective exactly
-    # utopia point and ranges over the edges; None where the front is one point
-    target: Payoff | None
+    target: Payoff | None  # utopia point and ranges over the edges; None of one point
     gaps: Sequence[Gap]  # gaps between the branches of a front of two objectives
     # (places, n) lattice points of normal-boundary intersection
     lattice: Floats = field(default_factory=lambda: np.zeros((0, 0)))

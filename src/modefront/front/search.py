@@ -174,14 +174,12 @@ class State:
     limits: Search = field(default_factory=Search)  # when it ends
     work: Executor = IMMEDIATE  # carries out tasks
     least: Floats | None = None  # (n,) values that no objectives fall below; None of unknown ones
-    # subproblems with their incumbents
-    places: list[Place] = field(default_factory=list)
+    places: list[Place] = field(default_factory=list)  # subproblems with their incumbents
     evaluations: int = 0  # so far
     turn: int = 0  # number of batches that were solved
     # numbers of offers, and of evaluations that they took, by proposer and kind of subproblem
     spent: dict[Key, list[int]] = field(default_factory=dict)
-    # subproblems for which offers were left at the budget
-    open: set[Key] = field(default_factory=set)
+    open: set[Key] = field(default_factory=set)  # subproblems with offers left at the budget
     # nondominated models of all evaluations, as the solutions that they are
     archive: Archive = field(init=False)
 

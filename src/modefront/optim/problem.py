@@ -137,8 +137,7 @@ class Wrapped:
     # returns the evaluation of a problem at theta (p,), with derivatives or without, and with
     # second ones or without
     evaluation: Callable[[Problem, Floats, bool, bool], Evaluation]
-    # names of the objectives, where they are not those of the problem
-    names: tuple[str, ...] | None = None
+    names: tuple[str, ...] | None = None  # of the objectives, where the problem has others
     most: int | None = None  # evaluations at most, after which SpentError is raised; None for any
     count: int = 0  # evaluations so far
 
