@@ -353,15 +353,14 @@ def sensitivities(problem: UpdatingProblem, fixed: tuple[str, ...] = ()) -> Sens
     return Sensitivities(problem.model.parameters, problem.data.modes, frequency, shape, fixed)
 
 
-def superfluous(problem: UpdatingProblem, weights: Floats | None = None) -> tuple[str, ...]:
+def superfluous(
+    problem: UpdatingProblem, nominal: Evaluation, weights: Floats | None = None
+) -> tuple[str, ...]:
     """Return the parameters with an effect of which the others leave least at the nominal model.
 
     Without them no combination is hardly determined (singular value below 1 % of the greatest),
     with weights (n,) as of `determination`.
     """
-    nominal = problem.evaluate(problem.start)
-    if not nominal.feasible:
-        return ()
     scale, names = scale_at(problem, problem.start), problem.model.parameters
     idle = without_effect(problem, nominal, scale)
     weights = optimal_weights(problem.properties, nominal.J) if weights is None else weights

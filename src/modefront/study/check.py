@@ -137,8 +137,9 @@ def check(study: Study | UpdatingProblem | Path | str) -> Findings:
         mistakes += tuple(each for each in bounds if each.severity is Severity.MISTAKE)
         agreement = compared(problem)
         agrees = agreement.error <= AGREEMENT
-        weighed = study.noise.weighed(problem, study.uncertainty.of(problem.data))
-        known, left_open = determined(*weighed)
+        of, weights = study.noise.weighed(problem, study.uncertainty.of(problem.data))
+        known, left_open = determined(of, weights)
+        fixed = superfluous(of, of.evaluate(of.start), weights)
         if spoilt:
             left_open = [each for each in left_open if each.kind == "no-effect"]
         derivatives = found(
@@ -154,7 +155,7 @@ def check(study: Study | UpdatingProblem | Path | str) -> Findings:
             mistakes,
             (*(x for x in bounds if x not in mistakes), *left_open, *_of_model(beside, nominal)),
             beside,
-            sensitivities(problem, superfluous(*weighed)),
+            sensitivities(problem, fixed),
             spoilt,
         )
 

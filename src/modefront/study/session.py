@@ -207,7 +207,9 @@ def worked(study: Study, work: Run) -> Dataset:
         inference = infer(noise, maxima, along, draws, seed, again)
     options = study.pareto, study.identifiability, study.uncertainty
     analysis = analyse_front(problem, front, *options, seed, again)
-    (nominal,) = work.run([Task(("nominal",), problem.evaluate, (problem.start,))])
+    of, weights = study.noise.weighed(problem, study.uncertainty.of(problem.data))
+    at = {("nominal",): problem.evaluate, ("nominal", "weighed"): of.evaluate}
+    nominal, beside = work.run([Task(key, each, (problem.start,)) for key, each in at.items()])
     more = [*analysis.identifiable.points, Point(Kind.NOMINAL, given(nominal))]
     certify(problem, [point.solution for point in more], again)
     data = dataset(problem, replace(front, points=[*front.points, *more]), analysis)
@@ -221,7 +223,7 @@ def worked(study: Study, work: Run) -> Dataset:
     runner = PredictionRunner(problem, study.predictions, seed, again, study.file)
     draws = study.uncertainty.draws
     data = with_predictions(data, runner, study.slack, gaussian, draws, drawn)
-    spare = superfluous(*study.noise.weighed(problem, study.uncertainty.of(problem.data)))
+    spare = superfluous(of, beside, weights) if beside.feasible else ()
     return with_verdict(data, spare).assign_attrs(_attributes(study, work, front))
 
 

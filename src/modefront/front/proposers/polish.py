@@ -19,8 +19,8 @@ class Polish:
     those that lag least behind what they could be come first, next to what is solved. So a front
     is followed from its edges inwards, each point from its neighbour. Then points are solved from
     those that lie on their normals, the nearest first, as long as that has a chance to gain: the
-    front may go on from another side. A point that lies on its own, or misses its equations, is
-    solved from as many as there are objectives at most.
+    front may go on from another side. A point that lies on its own, and one that has missed its
+    equations, is solved from as many as there are objectives at most; one that meets them is left.
     """
 
     # searches from other points since the last gain, of points on their normals and of others
@@ -39,11 +39,14 @@ class Polish:
         for place, of in (x for x in points if x[0].closed):
             nearest = [met[m] for m in of.order.spread(J).argsort(kind="stable").tolist()]
             nearest, on = [x for x in nearest if x is not place.incumbent], of.met(place.incumbent)
-            needed = of.equations and not on
-            near = nearest[: J.shape[1]] if on or needed else nearest
-            chance = 1.0 if needed else 1 / (self.idle.get(on, 0) + 2)
+            if on and of.equations:
+                continue
+            near = nearest[: J.shape[1]] if on or of.equations else nearest
+            chance = 1.0 if of.equations else 1 / (self.idle.get(on, 0) + 2)
             new = (y for y in near if (of.key, y.theta.tobytes()) not in self._tried)
-            yield from (solve_from(place, y, chance) for y in islice(new, len(near) * needed or 1))
+            yield from (
+                solve_from(place, y, chance) for y in islice(new, len(near) * of.equations or 1)
+            )
 
     def learn(self, state: State, offer: Offer, _: Outcome, gain: float) -> None:
         """Remember from which model a place was solved, and count what others have led to."""
