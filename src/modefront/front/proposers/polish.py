@@ -19,8 +19,8 @@ class Polish:
     those that lag least behind what they could be come first, next to what is solved. So a front
     is followed from its edges inwards, each point from its neighbour. Then points are solved from
     those that lie on their normals, the nearest first, as long as that has a chance to gain: the
-    front may go on from another side. A point that lies on its own, and one that has missed its
-    equations, is solved from as many as there are objectives at most; one that meets them is left.
+    front may go on from another side. Where a point lies on its own, or has missed its equations,
+    these are as many as there are objectives at most; a point that meets equations is left.
     """
 
     # searches from other points since the last gain, of points on their normals and of others
@@ -44,9 +44,8 @@ class Polish:
             near = nearest[: J.shape[1]] if on or of.equations else nearest
             chance = 1.0 if of.equations else 1 / (self.idle.get(on, 0) + 2)
             new = (y for y in near if (of.key, y.theta.tobytes()) not in self._tried)
-            yield from (
-                solve_from(place, y, chance) for y in islice(new, len(near) * of.equations or 1)
-            )
+            count = len(near) if of.equations else 1
+            yield from (solve_from(place, y, chance) for y in islice(new, count))
 
     def learn(self, state: State, offer: Offer, _: Outcome, gain: float) -> None:
         """Remember from which model a place was solved, and count what others have led to."""
