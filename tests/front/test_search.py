@@ -419,6 +419,22 @@ def test_polish_closes_every_incumbent() -> None:
     assert not list(polish.offers(state, 6))
 
 
+@pytest.mark.parametrize("status", [Status.JUMP, Status.CONVERGED])
+def test_a_model_at_a_jump_gives_way_to_any_that_is_better(status: Status) -> None:
+    """A little is no gain that counts, and a minimum has better neighbours by rounding alone."""
+    problem = box(curved, [-2, -2], [2, 2])
+    state = state_of(problem, anchors(problem), [[0.1, 0.3]])
+    place = state.places[-1]
+    place.incumbent, place.closed = replace(place.incumbent, status=status), True
+    better = begin(problem.evaluate(np.array([0.1, 0.3 - 1e-6])))
+    assert 0 < place.subproblem.gain(better.J, place.incumbent) < TOLERANCE
+    outcome = Outcome(better, better.theta[None], better.J[None], 1)
+    assert state.tell(None, None, outcome) == 0
+    assert place.closed
+    assert place.incumbent.status is status
+    assert (place.incumbent.evaluation is better.evaluation) == (status is Status.JUMP)
+
+
 def test_points_are_solved_from_the_nearest_that_lie_on_their_normals() -> None:
     problem = box(circles, [-2, -2], [2, 2])
     edges = [[0.0, 0.0], [1.0, 0.0]]

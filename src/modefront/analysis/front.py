@@ -42,10 +42,8 @@ class Identifiable:
 
     # (n,) how many points of the whole front lie in the flat part at each edge, besides it
     flat: Ints
-    # (n,) likewise, where the end of the flat part was not found, so that it is not cut
-    uncut: Ints
-    # along it, unless it is one point, and its ends that are no edges
-    points: Sequence[Point] = ()
+    uncut: Ints  # (n,) likewise, where the end of the part was not found, so that it is not cut
+    points: Sequence[Point] = ()  # along it, unless it is one point; its ends that are no edges
     target: Payoff | None = None  # the simplex between its ends; None where the part is one point
 
 

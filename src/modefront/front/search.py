@@ -180,8 +180,7 @@ class State:
     # numbers of offers, and of evaluations that they took, by proposer and kind of subproblem
     spent: dict[Key, list[int]] = field(default_factory=dict)
     open: set[Key] = field(default_factory=set)  # subproblems with offers left at the budget
-    # nondominated models of all evaluations, as the solutions that they are
-    archive: Archive = field(init=False)
+    archive: Archive = field(init=False)  # nondominated models, as the solutions that they are
 
     def __post_init__(self) -> None:
         self.archive = Archive(len(self.problem.objectives))
@@ -294,11 +293,14 @@ class State:
     def _challenge(self, place: Place, solution: Solution) -> float:
         """Let a model compete for a place; return the gain where it had been solved, else 0.
 
-        What is open starts from any model that is better, if its derivatives are known.
+        What is open starts from any model that is better, if its derivatives are known. What has
+        ended at a jump is no minimum, and such a model takes its place as it is.
         """
-        ready = not place.closed and solution.evaluation.derivatives
-        gain = place.subproblem.gain(solution.J, place.incumbent)
-        if gain <= (0.0 if ready else self.limits.tolerance):
+        known, of = place.incumbent, solution.evaluation
+        gain = place.subproblem.gain(solution.J, known)
+        if gain <= (0.0 if of.derivatives and not place.closed else self.limits.tolerance):
+            if gain > 0 and of.derivatives and known.status is Status.JUMP:
+                place.incumbent = replace(known, evaluation=of)
             return 0.0
         was_closed, place.closed = place.closed, False
         place.incumbent = solution
