@@ -196,7 +196,7 @@ def test_shapes_leave_the_scale_of_the_stiffness_in_every_form(
 @pytest.mark.parametrize("form", FORMS)
 def test_frequencies_and_all_data_determine_all_in_every_form(form: str) -> None:
     problem = problem_of(form)
-    text = [str(each) for each in determined(problem)[0]]
+    text = [str(each) for each in determined(problem, problem.evaluate(problem.start))[0]]
     assert text[0] == "group frequencies determines 4 of 4 combinations of parameters"
     assert text[2] == "all data determine 4 of 4 combinations of parameters"
 
@@ -263,7 +263,7 @@ def test_a_parameter_without_effect_is_said_once_and_is_like_no_other() -> None:
             assert (
                 residuals(problem, other, group) == residuals(problem, evaluation.theta, group)
             ).all()
-    text = tuple(map(str, determined(problem)[0]))
+    text = tuple(map(str, determined(problem, evaluation)[0]))
     assert text == (
         "group frequencies determines 3 of 3 combinations of parameters that have an effect",
         "group shapes determines 2 of 3 combinations of parameters that have an effect; "

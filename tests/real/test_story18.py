@@ -65,7 +65,7 @@ def test_each_measured_number_determines_one_combination(frame: mf.UpdatingProbl
 
 def test_the_check_says_so_in_words(frame: mf.UpdatingProblem) -> None:
     problem = first_two(frame)
-    known, _ = determined(problem)
+    known, _ = determined(problem, problem.evaluate(problem.start))
     frequencies, shapes, together = map(str, known)
     assert frequencies.startswith(
         "group frequencies determines 2 of 18 combinations of parameters; "

@@ -116,10 +116,10 @@ def everywhere(
 
 
 def _pinned(spectrum: Spectrum, k: int) -> Factorisation:
-    """Return the factor of K - lam_k M with a spring where mode k moves most.
+    """Return the factor of K - lam_k M with a spring where mode k has most of its mass.
 
-    Forces that do no work on the mode leave the spring at rest, as all forces together would do
-    work on it otherwise: the solution is one without a spring, and holds some of the mode.
+    The spring is at rest under forces that do no work on the mode, as it would do some itself
+    otherwise: the solution is one without a spring, and holds some of the mode.
     """
     K, M = (A.at(spectrum.theta) for A in (spectrum.pencil.K, spectrum.pencil.M))
     dof = int((spectrum.Phi[:, k] * spectrum.MPhi[:, k]).argmax())

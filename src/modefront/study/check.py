@@ -138,8 +138,9 @@ def check(study: Study | UpdatingProblem | Path | str) -> Findings:
         agreement = compared(problem)
         agrees = agreement.error <= AGREEMENT
         of, weights = study.noise.weighed(problem, study.uncertainty.of(problem.data))
-        known, left_open = determined(of, weights)
-        fixed = superfluous(of, of.evaluate(of.start), weights)
+        start = of.evaluate(of.start)
+        known, left_open = determined(of, start, weights)
+        fixed = superfluous(of, start, weights)
         if spoilt:
             left_open = [each for each in left_open if each.kind == "no-effect"]
         derivatives = found(
@@ -254,15 +255,14 @@ def refuse_unchanged_groups(problem: UpdatingProblem, file: str, unchanged: Sequ
 
 
 def determined(
-    problem: UpdatingProblem, weights: Floats | None = None
+    problem: UpdatingProblem, nominal: Evaluation, weights: Floats | None = None
 ) -> tuple[list[Finding], list[Finding]]:
     """Return which combinations each group, and all, determine near the nominal parameters.
 
     ``weights`` (n,) of the groups are those of expected errors. Beside these are the parameters
     without effect, what all data leave open, and those alike.
     """
-    names = problem.model.parameters
-    of = determination(problem, problem.evaluate(problem.start), weights)
+    names, of = problem.model.parameters, determination(problem, nominal, weights)
     left_open = knowledge.no_effect(of.idle, names)
     degrees: dict[str, list[str]] = {"do not determine": [], "hardly determine": []}
     for each in of.combinations[-1][1]:
