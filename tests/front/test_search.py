@@ -41,7 +41,7 @@ from modefront.front.search import (
     Search,
     State,
     at,
-    evaluate_all,
+    evaluated_all,
     recorded,
 )
 from modefront.front.simplex import lattice, payoff
@@ -508,6 +508,15 @@ def test_starts_that_lead_to_the_same_value_are_counted_together() -> None:
     assert known.hits(better, TOLERANCE) == 0
 
 
+def test_of_minima_as_low_as_an_edge_those_behind_it_are_counted_together() -> None:
+    J = np.array([[1.0, 3.0], [1.0, 5.0], [1.0, 9.0], [1.0, 3.0], [2.0, 1.0], [1.0, 7.0]])
+    ends = [given_model(Evaluation(np.zeros(1), x)) for x in J]
+    place, known = Place(Least(0, np.ones(2), "J"), ends[0]), Minima()
+    for end in ends:
+        known.note(place, end, TOLERANCE)
+    assert known.counts == [2, 3, 1]
+
+
 def test_starts_that_end_at_the_limit_of_iterations_have_met_no_minimum() -> None:
     known, place = ended(1.0, 10, 1, [1, 1])
     for J in (1.0, 2.0, 5.0):
@@ -642,7 +651,7 @@ class Given:
         self.asked += 1
         assert most > 0
         if not self.told:
-            yield evaluate_all(self.thetas, 0.9)
+            yield Offer(None, at(self.thetas[0]), 0.9, evaluated_all, (self.thetas,))
 
     def learn(self, state: State, offer: Offer, outcome: Outcome, gain: float, /) -> None:
         """Remember what was found."""
@@ -699,7 +708,8 @@ def test_what_gains_most_for_its_cost_comes_first() -> None:
 
         def offers(self, state: State, most: int, /) -> Iterator[Offer]:
             if len(self.told) < 3:
-                yield evaluate_all(np.ones((self.count, 2)), 0.5)
+                theta = np.ones((self.count, 2))
+                yield Offer(None, at(theta[0]), 0.5, evaluated_all, (theta,))
 
         def learn(self, state: State, offer: Offer, outcome: Outcome, gain: float, /) -> None:
             super().learn(state, offer, outcome, gain)

@@ -51,19 +51,31 @@ def test_the_path_goes_on_until_a_weak_objective_is_least(stiffness: float) -> N
         assert best.theta == pytest.approx([x, 1 / x], abs=1e-4)
 
 
+def wells(theta: Floats) -> Derivatives:
+    """Return J1 and J2, which has two wells in t on the line r = 1; off it the second is none."""
+    r, t = theta
+    well = np.poly1d([16, -32, 16, -1.5, 0])
+    J = np.array([(r - 1) ** 2, 20 * (2 - r) ** 2 + well(t) + 12 * (r - 1) * t])
+    dJ = np.array([[2 * (r - 1), 0], [40 * (r - 2) + 12 * t, well.deriv()(t) + 12 * (r - 1)]])
+    return J, dJ, np.array([[[2.0, 0], [0, 0]], [[40.0, 12], [12, well.deriv(2)(t)]]])
+
+
 def test_a_path_that_leads_to_worse_others_than_the_minimum_below_a_start_is_not_taken() -> None:
-    """Off the line r = 1, where epsilon is great, the second of two wells in t is none."""
-
-    def wells(theta: Floats) -> Derivatives:
-        r, t = theta
-        well = np.poly1d([16, -32, 16, -1.5, 0])
-        J = np.array([(r - 1) ** 2, 20 * (2 - r) ** 2 + well(t) + 12 * (r - 1) * t])
-        dJ = np.array([[2 * (r - 1), 0], [40 * (r - 2) + 12 * t, well.deriv()(t) + 12 * (r - 1)]])
-        return J, dJ, np.array([[[2.0, 0], [0, 0]], [[40.0, 12], [12, well.deriv(2)(t)]]])
-
     problem = box(wells, [0.0, -0.5], [2.0, 1.5])
     best = Lexicographic(0, ONES).solve(problem, begin(problem.evaluate(np.array([1.2, 0.8]))))
     assert best.theta == pytest.approx([1, 1.04155], abs=1e-4)
+
+
+def test_a_path_ends_where_its_others_exceed_those_of_a_known_minimum() -> None:
+    problem, order = box(wells, [0.0, -0.5], [2.0, 1.5]), Lexicographic(0, ONES)
+    starts = [begin(problem.evaluate(np.array(x))) for x in ([1.2, 0.8], [1.2, 0.0])]
+    second, first = (order.solve(problem, start) for start in starts)
+    assert second.J[1] < first.J[1] - 1
+    left = order.solve(problem, starts[1], second)
+    assert left.converged
+    assert order.ties(left.J, second.J)
+    assert left.evaluations < first.evaluations
+    assert order.solve(problem, starts[0], first).J == pytest.approx(second.J), "that is better"
 
 
 def test_a_minimum_above_the_least_known_one_is_not_followed_to_its_end() -> None:

@@ -335,13 +335,12 @@ class _Run:
     def _reported(self, turn: int | str) -> list[Solution]:
         """Return the edges, those within the tolerance that are best in the others if wanted."""
         bests = [place.incumbent for place in self.state.places[: self.n]]
-        tolerance = self.options.tolerance
-        if tolerance == 0:
+        if self.options.tolerance == 0:
             return bests
         starts = [place.incumbent for place in self.state.places]
         tasks = []
         for i, name in enumerate(self.problem.objectives):
-            arguments = (self.problem, bests[i], i, tolerance, self.sizes, starts)
+            arguments = (self.problem, bests[i], i, self.options.tolerance, self.sizes, starts)
             tasks.append(Task(("near", name), near_best, arguments, turn=("near", turn)))
         return [x or best for x, best in zip(self._run(tasks), bests, strict=True)]
 

@@ -136,11 +136,6 @@ def solve_from(
     return Offer(place, start, chance, _solved, arguments, expected)
 
 
-def evaluate_all(thetas: Floats, chance: float, expected: float | None = None) -> Offer:
-    """Return the offer to evaluate models (., p) without derivatives."""
-    return Offer(None, at(thetas[0]), chance, evaluated_all, (thetas,), expected)
-
-
 def at(theta: Floats) -> Solution:
     """Return a start at parameters (p,) at which nothing is known."""
     return begin(Evaluation(theta, np.zeros(1)))

@@ -85,9 +85,9 @@ class Lexicographic:
             return best
         if self.level(best.J[i]) > (1 + TIE) * least or not self.is_open(problem, best.evaluation):
             return best
-        spent = best.evaluations
+        spent, rival = best.evaluations, known if known and self.ties(known.J, best.J) else None
         for epsilon, begins in ((1 / RATIO, start), (1 / RATIO**4, best)):
-            end = self._end(problem, epsilon, begins, known)
+            end = self._end(problem, epsilon, begins, rival)
             spent += end.evaluations
             isolated, tied = self._equal(end.J, best.J), self.ties(end.J, best.J)
             worse = self.others @ end.J > self.others @ best.J if tied else end.J[i] > best.J[i]
@@ -96,16 +96,17 @@ class Lexicographic:
         return replace(best, evaluations=spent)  # the paths lead to other basins
 
     def _end(
-        self, problem: Problem, epsilon: float, start: Solution, known: Solution | None
+        self, problem: Problem, epsilon: float, start: Solution, rival: Solution | None
     ) -> Solution:
         """Return the limit of the path of minimisers from an epsilon on.
 
         Each but the first ones is solved for from the limit that those before it tell, as exactly
-        as the share of the others asks for.
+        as the share of the others asks for. The others grow along a path: where they exceed those
+        of a ``rival``, it ends at its start.
         """
         spent, ahead, path, limits = 0, start, list[Floats](), list[Evaluation]()
         coarse: Solution | None = None
-        passed = np.zeros((0, 3)) if known is None or known.path is None else known.path
+        passed = np.zeros((0, 3)) if rival is None or rival.path is None else rival.path
         while True:
             enough = replace(TIGHTEST, step=Options().step, reduction=SHARE * epsilon)
             fine = solve(problem, self.programme(epsilon), ahead, enough)
@@ -114,8 +115,10 @@ class Lexicographic:
             rest = self.others @ fine.J
             path.append(np.array([epsilon, self.programme(epsilon).value(fine.J), rest]))
             apart = np.abs(passed - path[-1]) / np.maximum(path[-1], np.finfo(float).tiny)
-            if known and (apart <= [TIE, TIE, DISTINCT]).all(axis=1).any():
-                return replace(known, evaluations=spent)
+            if rival and (apart <= [TIE, TIE, DISTINCT]).all(axis=1).any():
+                return replace(rival, evaluations=spent)
+            if rival and rest > (1 + TIE) * (self.others @ rival.J):
+                return replace(start, evaluations=spent)
             if coarse is None:
                 ahead = fine
             else:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.front.search import USUAL, Offer, Outcome, State, evaluate_all
+from modefront.front.search import USUAL, Offer, Outcome, State, at, evaluated_all
 
 INDEX = 20.0  # distribution index of mutations: the usual value
 
@@ -33,7 +33,8 @@ class Evolution:
             for idle in range(self.idle, self.idle + most):
                 gains = 1 / (idle + 2)
                 bound = max(unseen, gains * self.alone)
-                yield evaluate_all(self._children(state), bound, gains * unseen)
+                theta = self._children(state)
+                yield Offer(None, at(theta[0]), bound, evaluated_all, (theta,), gains * unseen)
 
     def learn(self, state: State, _: Offer, __: Outcome, gain: float) -> None:
         """Count the generation."""

@@ -20,6 +20,7 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.front.search import USUAL, Offer, Outcome, Place, State, at, solve_from
+from modefront.front.subproblems import Least
 from modefront.optim.sqp import Solution, Status
 from modefront.work.task import Key
 
@@ -70,9 +71,11 @@ class Minima:
 
 
 def _equal(place: Place, x: Solution, y: Solution, tolerance: float) -> bool:
-    """Return whether two minima are of the same value."""
+    """Return whether two minima are of the same value; of edges, those behind the best one are."""
     of = place.subproblem
-    return max(of.gain(x.J, y), of.gain(y.J, x)) <= tolerance
+    behind = min(of.gain(place.incumbent.J, x), of.gain(place.incumbent.J, y)) > tolerance
+    tied = isinstance(of, Least) and of.ties(x.J, y.J)
+    return (tied and behind) or max(of.gain(x.J, y), of.gain(y.J, x)) <= tolerance
 
 
 @dataclass
