@@ -18,7 +18,7 @@ COPY = 10 * TIE
 BLOCK = 1_000_000  # differences of objectives that are held at once
 
 
-def nondominated(J: Floats, tolerance: float = TIE, scale: Floats | None = None) -> Bools:
+def nondominated(J: Floats, tolerance: float = COPY, scale: Floats | None = None) -> Bools:
     """Return which rows of J (points, n) no other row dominates, equation (4).
 
     A row dominates another one if it is nowhere greater and somewhere less. So that two results of
@@ -40,7 +40,7 @@ def nondominated(J: Floats, tolerance: float = TIE, scale: Floats | None = None)
     return undominated(J, J, scale, tolerance)
 
 
-def undominated(J: Floats, known: Floats, scale: Floats, tolerance: float = TIE) -> Bools:
+def undominated(J: Floats, known: Floats, scale: Floats, tolerance: float = COPY) -> Bools:
     """Return which rows of J (points, n) no row of ``known`` (models, n) dominates.
 
     Gains and losses count as in `nondominated`; ``scale`` (n,) are the ranges of the objectives.
