@@ -37,20 +37,15 @@ AXES = {1: "X", 2: "Y", 3: "Z", 4: "RX", 5: "RY", 6: "RZ"}  # directions by thei
 SUFFIXES = (".uff", ".unv", ".uf", ".bunv", ".ufb")  # ends of names of universal files
 REAL = {2: 1, 5: 2}  # numbers of a value by the type of data
 NAMES = tuple(AXES.values())  # directions in the order of the components
-
-KNOWN = (15, 18, 55, 58, 2411, 2420)
-"""Datasets that are read, whose numbers may have blanks before them as no other line has."""
+KNOWN = (15, 18, 55, 58, 2411, 2420)  # datasets that are read; no other line may begin as theirs
 
 OPENING = re.compile(
     rb"(?:\xef\xbb\xbf)?\s*^[ ]{4}-1[ \t]*\r?\n[ ]*([0-9]{1,5})(b?)(?!\S)([^\n]*)(?:\n|\Z)",
     re.MULTILINE,
 )
 HEADER, RECORD_7 = 11, 6  # lines of dataset 58 before its numbers; that with their number, from 0
-Point = tuple[int, int, int, Floats]
-"""A node: its number, the systems of its coordinates and its displacement, and coordinates (3,)."""
-
-System = tuple[int, Floats, Floats]
-"""A system of coordinates: its type, its axes (3, 3) in rows, and its origin (3,)."""
+Point = tuple[int, int, int, Floats]  # node, systems of coordinates and displacement, coordinates
+System = tuple[int, Floats, Floats]  # of coordinates: type, axes (3, 3) in rows, and origin (3,)
 
 
 @dataclass(frozen=True)

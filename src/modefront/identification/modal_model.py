@@ -42,12 +42,8 @@ from modefront.identification.noise import square
 from modefront.identification.problem import RESIDUALS, Problem, combined, gram, primitives
 from modefront.identification.scan import Scan, scan
 
-FINE, COARSE = 1e-4, 1e-2
-"""Squared steps in standard deviations that end an iteration: for results, and for choices."""
-
-MOST_EVALUATIONS = 40
-"""Evaluations after which a fit has failed; simulated tests take three to fifteen."""
-
+FINE, COARSE = 1e-4, 1e-2  # squared steps, in deviations, that end it: for results, for choices
+MOST_EVALUATIONS = 40  # after which a fit has failed; simulated tests take three to fifteen
 ROUNDING = 1e-13  # share of the squares of a column that may be rounding
 BEND = 1 / 8  # width of a block of lines over the distance of the nearest pole
 

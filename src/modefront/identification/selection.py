@@ -20,16 +20,12 @@ from modefront.rounding import TINY
 
 FALSE = 1e-3  # expected number of modes in a band that noise alone makes
 MOST_ROUNDS = 20  # rounds in which poles are added, at most
-
-OVERDAMPED = 0.9
-"""Damping ratio from which on a pole and its conjugate are nearly one and the same real pole."""
+OVERDAMPED = 0.9  # damping ratio from which on a pole and its conjugate are nearly one real pole
 
 LEAST_UNLIKE = 1e-6
 """Least squared share of the derivative by a pole that no residual term can make up. In the normal
 equations rounding takes some 1e-8; poles within the band have 0.1 and more."""
-
-MOST_EVALUATIONS = 20
-"""Evaluations of the model for a choice, which need not be at the very maximum."""
+MOST_EVALUATIONS = 20  # of the model for a choice, which need not be at the very maximum
 
 CLOSEST = 0.5
 """Distance of poles over the greater of their half bandwidths below which they are not told apart

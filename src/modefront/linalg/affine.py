@@ -189,8 +189,7 @@ class SparseAffine:
 
     indptr: Ints32  # (N + 1,) where each row starts in ``indices``
     indices: Ints32  # (entries,) columns, ascending within each row
-    # (entries, terms) values of each term; sparse, since most terms are local
-    terms: csc_array
+    terms: csc_array  # (entries, terms) values of each term; sparse, since most terms are local
     coefficients: Monomials  # c(theta)
 
     @property

@@ -37,8 +37,7 @@ from modefront.options import each_once
 from modefront.text import Shown, brief_model
 from modefront.work.transfer import shared
 
-Matrix: TypeAlias = Any
-"""A matrix (N, N): an array, nested lists of numbers, or a sparse matrix of scipy."""
+Matrix: TypeAlias = Any  # (N, N): an array, nested lists of numbers, or a sparse matrix of scipy
 
 MatrixFunction: TypeAlias = Callable[
     [NDArray[Any]],

@@ -117,8 +117,7 @@ class Modes(Shown):
     """The lowest modes of a model, in ascending order, seen at its sensors."""
 
     lam: Floats  # (modes,) eigenvalues omega**2 in (rad/s)**2
-    # (sensors, modes) mass-normalised mode shapes at the sensors; the sign is arbitrary
-    phi: Floats
+    phi: Floats  # (sensors, modes) mass-normalised shapes at the sensors; the sign is arbitrary
     # with respect to the parameters; None where they were not requested
     derivatives: ModeDerivatives | None = None
 

@@ -140,8 +140,7 @@ class Listed:
     """What the files of a job list, before it is checked."""
 
     files: tuple[Path, Path]  # that of the stiffness, and that of the mass
-    # stiffness and mass as they are listed, one triangle or both
-    matrices: Sequence[scipy.sparse.coo_array]
+    matrices: Sequence[scipy.sparse.coo_array]  # stiffness and mass, one triangle or both
     dofs: DofTable  # node and direction of each row; `given_table` where no file tells them
     precision: float = 1e-15  # relative error of the numbers, that of binary doubles unless given
     # which rows are not held, (N,), given both matrices
