@@ -21,15 +21,11 @@ from modefront.identification.statistics import mode_estimates, residuals
 from modefront.linalg.small import mac
 from modefront.rounding import TINY
 
-LEAST_LINES = 20
-"""Lines of a band, at least: two modes with their residual terms have twelve numbers a function."""
-
+LEAST_LINES = 20  # of a band: two modes with residual terms have twelve numbers a function
 PRINCIPAL = 48  # principal responses from which the modes are chosen where there are more responses
 FEW = 0.5  # share of the orders below which a mode is flagged, and phase collinearity
 VISIBLE = 1 / 3  # share in the sum of all modes at its frequency below which a mode is flagged
-
-NEIGHBOURS = 0.05
-"""Relative distance of frequencies within which modes of the same shape may be one."""
+NEIGHBOURS = 0.05  # relative distance of frequencies within which modes of one shape may be one
 
 
 def identify(
@@ -168,19 +164,11 @@ def _result(
             rejected.append(Rejected(mode.frequency, mode.damping, why))
     shares = stabilisation.support(diagram, fit.lam * omega, gain)
     judged = _judged(fit, f, gain / selection.needed(task), shares, estimates, kept)
-    return Identification(
-        data.responses,
-        (float(f[0]), float(f[-1])),
-        tuple(sorted((judged[k] for k in kept), key=lambda mode: mode.frequency)),
-        tuple(sorted(rejected, key=lambda pole: pole.frequency)),
-        diagram,
-        data,
-        fit.functions * size,
-        misfit,
-        len(RESIDUALS) // 2,
-        fit.evaluations,
-        fit.converged,
-    )
+    modes = tuple(sorted((judged[k] for k in kept), key=lambda mode: mode.frequency))
+    others = tuple(sorted(rejected, key=lambda pole: pole.frequency))
+    band, synthesised = (float(f[0]), float(f[-1])), fit.functions * size
+    known = data.responses, band, modes, others, diagram, data, synthesised, misfit
+    return Identification(*known, len(RESIDUALS) // 2, fit.evaluations, fit.converged)
 
 
 # 6 arguments: what speaks for a mode, and its neighbours.
