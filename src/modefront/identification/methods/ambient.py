@@ -18,12 +18,7 @@ from modefront._typing import Bools, Floats
 from modefront.data.modal_test import Records
 from modefront.data.responses import FrequencyResponses
 from modefront.identification import harmonics, selection, spectra, spectral_density
-from modefront.identification.record import (
-    Identification,
-    ModeEstimate,
-    Rejected,
-    Residuals,
-)
+from modefront.identification.record import Identification, ModeEstimate, Rejected, Residuals
 from modefront.identification.selection import FALSE
 from modefront.identification.sets import LEAST_MAC, merged_shape, mode_groups
 from modefront.identification.shapes import real_shape
@@ -46,12 +41,8 @@ WIDEST = 0.15
 """Half the width of a band over the frequency of its mode, at most, beyond the first reach: over it
 flanks of modes outside are linear."""
 
-BEYOND = 2 * WIDEST
-"""Share of the highest frequency up to which what moves above it is told from the background."""
-
-OVERLAP = 4.0, 8.0
-"""Distance over the sum of half bandwidths within which modes are fitted at once: first, last."""
-
+BEYOND = 2 * WIDEST  # share of the highest frequency up to which what moves above it is told apart
+OVERLAP = 4.0, 8.0  # distance over the sum of half bandwidths of modes fitted at once: first, last
 LEAST_LINES = 40  # lines of a band, at least
 MOST_TOGETHER = 5  # modes that are fitted at once, at most
 
@@ -61,15 +52,11 @@ apart. With one only, what forces of their own do to the others shifts frequenci
 
 DAMPING = 0.002, 0.05  # limits of damping ratios to start from
 
-TRIAL_STEPS = 8
-"""Steps to the maximum without a mode, which need not be reached to see what the mode gains."""
-
+TRIAL_STEPS = 8  # to the maximum without a mode, which tell what it gains before it is reached
 HARMONIC = 1e-3  # share of the modes that would be taken for harmonics by chance
 CYCLES = 10  # periods of the lowest frequency in a record, at least, by default
 
-HIGHEST = 0.8
-"""Highest frequency over the greatest that records hold, by default: beyond it are filters."""
-
+HIGHEST = 0.8  # highest frequency over the greatest of records, by default: beyond are filters
 LINES_SHOWN = 400  # blocks of lines of the densities that are shown
 
 
@@ -83,8 +70,7 @@ class Local:
     # gain, freedom: 2 Delta J of the fit with the mode, and the parameters that it has more
     gain: float = np.inf
     freedom: float = 0.0
-    # of ln omega, ln zeta and phi
-    covariance: Floats = field(default_factory=lambda: np.zeros((0, 0)))
+    covariance: Floats = field(default_factory=lambda: np.zeros((0, 0)))  # ln omega, ln zeta, phi
     share: float = np.nan  # its greatest share in the density of a sensor, at its frequency
     kurtosis: tuple[float, float] = (2.0, 1.0)  # kappa, and its standard deviation for a mode
     held: bool = False  # whether it stays whatever its gain
@@ -98,16 +84,11 @@ class Local:
     @property
     def estimate(self) -> ModeEstimate:
         """The mode with its standard deviations, in physical units."""
-        stds = np.sqrt(np.diag(self.covariance))
-        return ModeEstimate(
-            complex(-self.half, self.omega * np.sqrt(1 - self.zeta**2)),
-            float(stds[0]) * self.omega / (2 * np.pi),
-            float(stds[1]) * self.zeta,
-            real_shape(np.nan_to_num(self.phi).astype(complex)),
-            stds[2:],
-            np.zeros(0, complex),
-            shape_covariance=self.covariance[2:, 2:],
-        )
+        stds, C = np.sqrt(np.diag(self.covariance)), self.covariance[2:, 2:]
+        pole = complex(-self.half, self.omega * np.sqrt(1 - self.zeta**2))
+        of_pole = float(stds[0]) * self.omega / (2 * np.pi), float(stds[1]) * self.zeta
+        shape = real_shape(np.nan_to_num(self.phi).astype(complex))
+        return ModeEstimate(pole, *of_pole, shape, stds[2:], np.zeros(0, complex), C)
 
 
 @dataclass(frozen=True)
@@ -333,22 +314,14 @@ def _of_group(
         return lines, []
     model, visible = fit.model, _shares(band, fit.model)
     least = chdtri(len(model.phi) + 2, chance)
-    explained = not last or spectral_density.excess(band, model) < least
-    return lines, [
-        Local(
-            float(model.omega[r]),
-            float(model.zeta[r]),
-            model.phi[:, r],
-            float(gain[r]),
-            float(freedom[r]),
-            fit.covariance(r),
-            float(visible[r]),
-            harmonics.kurtosis(lines, model, r, REACH[0]),
-            bool(held[r]),
-            bool(explained),
-        )
-        for r in range(model.free)
-    ]
+    explained, found = bool(not last or spectral_density.excess(band, model) < least), list[Local]()
+    for r in range(model.free):
+        pole = float(model.omega[r]), float(model.zeta[r])
+        evidence = float(gain[r]), float(freedom[r]), fit.covariance(r), float(visible[r])
+        kappa = harmonics.kurtosis(lines, model, r, REACH[0])
+        known = *pole, model.phi[:, r], *evidence, kappa, bool(held[r]), explained
+        found.append(Local(*known))
+    return lines, found
 
 
 def _without_sines(
@@ -369,17 +342,10 @@ def _without_sines(
 
 def _first(band: Band, modes: Sequence[Local], free: int) -> Density:
     """Return a model to start from, with the forces that the shapes make of the power."""
-    phi = np.array([mode.phi for mode in modes]).T
-    model = Density(
-        np.array([mode.omega for mode in modes]),
-        np.array([mode.zeta for mode in modes]),
-        phi,
-        np.eye(len(modes), dtype=complex),
-        band.total / band.weight,
-        free,
-        np.zeros((len(phi), 0)),
-        float(band.omega[[0, -1]].mean()),
-    )
+    omega, zeta = np.array([[mode.omega, mode.zeta] for mode in modes]).T
+    phi, root = np.array([mode.phi for mode in modes]).T, np.eye(len(modes), dtype=complex)
+    background, middle = band.total / band.weight, float(band.omega[[0, -1]].mean())
+    model = Density(omega, zeta, phi, root, background, free, np.zeros((len(phi), 0)), middle)
     h2 = np.abs(model.response(band.omega, band.order)) ** 2
     inverse = np.linalg.pinv(phi, rcond=0.1)
     filtered = np.einsum("ri,kij,rj->rk", inverse, band.power, inverse, optimize=True).real
@@ -457,17 +423,13 @@ def _combined(
             modes.append(mode)
         else:
             rejected.append(Rejected(mode.frequency, mode.damping, text))
+    accepted = tuple(sorted(modes, key=lambda mode: mode.frequency))
+    others = tuple(sorted(rejected, key=lambda pole: pole.frequency))
     first, data = max(setups, key=lambda x: len(x.records.sensors)), _densities(setups, sensors)
-    return Identification(
-        sensors,
-        band,
-        tuple(sorted(modes, key=lambda mode: mode.frequency)),
-        tuple(sorted(rejected, key=lambda pole: pole.frequency)),
-        first.diagram,
-        data,
-        np.full(data.H.shape, np.nan, complex),
-        Residuals(1.0, np.ones(1, complex), np.zeros(1), np.full(data.H.shape[:2], np.nan)),
-    )
+    unknown = np.full(data.H.shape, np.nan, complex)
+    misfit = Residuals(1.0, np.ones(1, complex), np.zeros(1), np.full(data.H.shape[:2], np.nan))
+    known = sensors, band, accepted, others, first.diagram, data, unknown, misfit
+    return Identification(*known)
 
 
 def _of_structure(
