@@ -28,13 +28,9 @@ class ModeEstimate:
     participation: Complexes  # (references,) factors of the complex shape before its rotation
     # (responses, responses) of the real shape, None for more than `MOST_COVARIED`
     shape_covariance: Floats | None = None
-    # how much better the fit is than that without the mode, 2 Delta J over the noise, over the
-    # least that a mode needs
-    gain: float = np.nan
-    # share of the orders of the diagram, from the first one with its pole, that have it
-    support: float = np.nan
-    # its greatest share, over all functions, in the sum of all modes at its frequency
-    visibility: float = np.nan
+    gain: float = np.nan  # 2 Delta J of the fit over the noise, over the least that a mode needs
+    support: float = np.nan  # share of the orders from the first one with its pole that have it
+    visibility: float = np.nan  # greatest share, in any function, of all modes at its frequency
     flags: tuple[str, ...] = ()  # reasons to look at it
 
     @property
@@ -64,9 +60,7 @@ class Residuals:
     chi2: float  # weighted sum of squares over degrees of freedom; 1 where the variance is right
     correlation: Complexes  # (lags,) of a line with the next ones
     force: Floats  # (references,) b, variance of the noise of the force channel, relative
-    # (references, responses) norm of the residual over that of the function; NaN where the function
-    # was not measured
-    share: Floats
+    share: Floats  # (references, responses) norm over that of the function; NaN if not measured
 
     @property
     def widening(self) -> float:

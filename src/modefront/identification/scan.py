@@ -35,8 +35,7 @@ def alike(pole: complex, others: Complexes) -> Floats:
 class Scan:
     """Poles all over the band, and what each explains of the residuals of a fit."""
 
-    # (poles,) half bandwidths go up by factors of two from the distance of lines, as do steps
-    lam: Complexes
+    lam: Complexes  # (poles,) half bandwidths, and steps, go up from those of lines by factors of 2
     gain: Floats  # (poles,) 2 Delta J of each in units of its noise
     L: Complexes  # (poles, references) its participation factors
     # (poles,) variance of the noise, as poles of the same damping find it in the neighbourhood; at

@@ -108,8 +108,7 @@ class ModeDerivatives(Shown):
     # (modes,) true where a mode is so close to another one that derivatives of the single mode are
     # not defined to eight digits, and only those of the subspace are
     coincident: Bools
-    # the second derivatives, computed when requested; None where they are not known
-    second: SecondDerivatives | None = None
+    second: SecondDerivatives | None = None  # computed when requested; None where not known
 
 
 @dataclass(frozen=True, repr=False)
@@ -118,8 +117,7 @@ class Modes(Shown):
 
     lam: Floats  # (modes,) eigenvalues omega**2 in (rad/s)**2
     phi: Floats  # (sensors, modes) mass-normalised shapes at the sensors; the sign is arbitrary
-    # with respect to the parameters; None where they were not requested
-    derivatives: ModeDerivatives | None = None
+    derivatives: ModeDerivatives | None = None  # by the parameters; None where not requested
 
     @property
     def dlam(self) -> Floats:
