@@ -187,12 +187,8 @@ def assemble(
     noise, H = noise if len(noise) == len(references) else (), H if blows > 1 else H[0]
     data = frequency_responses(f, H, quantity, coherence=coherence, variance=variance)
     data = replace(data, references=references, responses=responses, decay=decay, force_noise=noise)
-    warnings = [
-        *_units(name, data, groups, dead),
-        *_reciprocity(name, data, turned),
-        *_driving_points(data, groups),
-    ]
-    return DataSet(name, data, tuple(warnings))
+    warnings = *_units(name, data, groups, dead), *_reciprocity(name, data, turned)
+    return DataSet(name, data, (*warnings, *_driving_points(data, groups)))
 
 
 def _quantity(channels: Sequence[Channel], declared: str) -> str:
