@@ -103,8 +103,7 @@ class CheckedFunction:
         moved[i] += 1j * h
         place = f"{self._place(theta)}, complex {self.names[i]}"
         expected = "a function that takes complex parameters, or that returns K, M, dK and dM"
-        with warnings.catch_warnings():
-            warnings.simplefilter("error", ComplexWarning)
+        with warnings.catch_warnings(action="error", category=ComplexWarning):
             returned = self._call(moved, place, expected)
         dK, dM = (
             _checked(A, f"{place}: {what}", size, real=False).imag / h
