@@ -232,8 +232,7 @@ def thinned(fit: Fit, lam: Complexes) -> Problem:
 
 def _best(inverse: Floats, T: Floats, rho: Floats) -> Floats:
     """Return the linear parameters, (responses, linear), from products with the primitives."""
-    right = np.einsum("jqa,jiq->ia", T, rho)
-    return (inverse @ right[..., None])[..., 0]
+    return (inverse @ np.einsum("jqa,jiq->ia", T, rho)[..., None])[..., 0]
 
 
 def maximise(
@@ -282,8 +281,7 @@ def _inverse(G: Floats) -> Floats:
     diagonal = np.einsum("iaa->ia", G)
     scale = 1 / np.sqrt(np.where(diagonal > 0, diagonal, 1.0))
     scaled = G * scale[:, :, None] * scale[:, None, :]
-    unit = np.eye(G.shape[1])
-    scaled = scaled + unit * np.where(diagonal > 0, 1e-14, 1.0)[:, None, :]
+    scaled = scaled + np.eye(G.shape[1]) * np.where(diagonal > 0, 1e-14, 1.0)[:, None, :]
     out: Floats = np.linalg.inv(scaled) * scale[:, :, None] * scale[:, None, :]
     return (out + out.transpose(0, 2, 1)) / 2
 

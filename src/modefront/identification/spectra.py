@@ -99,7 +99,7 @@ def half_spectra(records: Records, low: float, high: float) -> tuple[FrequencyRe
     inside = (f >= low) & (f <= high)
     cross = (Y[:, inside] @ Y[:, inside].conj().T).real
     U = np.linalg.eigh(cross)[1][:, ::-1][:, :REFERENCES]
-    decay = -np.log(LEFT) * records.rate / lags
+    decay = float(-np.log(LEFT) * records.rate / lags)
     window = np.exp(-decay * np.arange(lags) / records.rate)
     window[0] = 0.0
     parts = []
@@ -110,9 +110,7 @@ def half_spectra(records: Records, low: float, high: float) -> tuple[FrequencyRe
     kept = (lines >= low) & (lines <= high)
     H: Complexes = np.array(parts)[..., kept]
     names = tuple(f"principal {j + 1}" for j in range(len(H)))
-    data = FrequencyResponses(
-        lines[kept], H, "receptance", names, records.sensors, decay=float(decay)
-    )
+    data = FrequencyResponses(lines[kept], H, "receptance", names, records.sensors, decay=decay)
     power = square(H).mean(axis=(0, 1))
     width = max(int(SMOOTH * len(power)), 1)
     smooth = np.convolve(np.pad(power, width, mode="edge"), np.ones(2 * width + 1), "valid")

@@ -76,8 +76,7 @@ def diagram_of(data: FrequencyResponses, variance: Floats) -> StabilisationDiagr
     shapes = [shapes_of(*poles, H, s[lines], q) for poles in kept]
     distance = [np.full(len(shapes[0]), np.inf)]
     for ((below, _), psi_below), ((now, _), psi) in pairwise(zip(kept, shapes, strict=True)):
-        d = _distances(now, psi, below, psi_below)
-        distance.append(d.min(axis=1, initial=np.inf))
+        distance.append(_distances(now, psi, below, psi_below).min(axis=1, initial=np.inf))
     order, stable = np.repeat(orders, list(map(len, shapes))), np.concatenate(distance) < CUT
     clusters = _clusters(order, pole, np.flatnonzero(stable), np.concatenate(shapes)[stable])
     return StabilisationDiagram(order, pole, participation, stable, tuple(orders), clusters)
@@ -157,8 +156,7 @@ def multivariate_indicators(data: FrequencyResponses) -> Floats:
     H = np.where(data.measured, data.H, 0).transpose(2, 1, 0)
     inphase, quadrature = (H.imag, H.real) if data.quantity == "mobility" else (H.real, H.imag)
     A = inphase.swapaxes(1, 2) @ inphase
-    B = quadrature.swapaxes(1, 2) @ quadrature
-    total = A + B
+    total = A + quadrature.swapaxes(1, 2) @ quadrature
     size = np.trace(total, axis1=1, axis2=2)[:, None, None] / total.shape[1]
     total = total + (LEAST * np.maximum(size, TINY)) * np.eye(total.shape[1])
     root = np.linalg.inv(np.linalg.cholesky(total))

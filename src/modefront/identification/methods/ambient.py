@@ -17,19 +17,14 @@ from scipy.special import chdtri, ndtri
 from modefront._typing import Bools, Floats
 from modefront.data.modal_test import Records
 from modefront.data.responses import FrequencyResponses
-from modefront.identification import harmonics, selection, spectra, spectral_density
+from modefront.identification import harmonics, selection, spectra, spectral_density, stabilisation
 from modefront.identification.record import Identification, ModeEstimate, Rejected, Residuals
 from modefront.identification.selection import FALSE
 from modefront.identification.sets import LEAST_MAC, merged_shape, mode_groups
 from modefront.identification.shapes import real_shape
 from modefront.identification.spectra import Transforms
 from modefront.identification.spectral_density import Band, Density, Fit
-from modefront.identification.stabilisation import (
-    StabilisationDiagram,
-    diagram_of,
-    shapes_of,
-    support,
-)
+from modefront.identification.stabilisation import StabilisationDiagram
 
 REACH = 4.0, 20.0
 """Half bandwidths on either side of a mode that its band has: the first while its neighbours are
@@ -67,9 +62,8 @@ class Local:
     omega: float  # omega, zeta: rad/s, damping ratio
     zeta: float
     phi: Floats  # (sensors,) of unit norm
-    # gain, freedom: 2 Delta J of the fit with the mode, and the parameters that it has more
-    gain: float = np.inf
-    freedom: float = 0.0
+    gain: float = np.inf  # 2 Delta J of the fit with the mode
+    freedom: float = 0.0  # parameters that this fit has more
     covariance: Floats = field(default_factory=lambda: np.zeros((0, 0)))  # ln omega, ln zeta, phi
     share: float = np.nan  # its greatest share in the density of a sensor, at its frequency
     kurtosis: tuple[float, float] = (2.0, 1.0)  # kappa, and its standard deviation for a mode
@@ -168,11 +162,12 @@ def _above(records: Records, high: float) -> tuple[Local, ...]:
 def _starts(records: Records, low: float, high: float) -> tuple[StabilisationDiagram, list[Local]]:
     """Return the diagram of half spectra and its clusters within the band as modes."""
     data, variance = spectra.half_spectra(records, low, high)
-    diagram = diagram_of(data, variance)
+    diagram = stabilisation.diagram_of(data, variance)
     f = diagram.frequency[diagram.clusters]
     inside = diagram.clusters[(f >= low) & (f <= high)]
     lam, s = diagram.pole[inside], np.asarray(2j * np.pi * data.frequency + data.decay)
-    psi = shapes_of(lam, diagram.participation[inside], data.H, s, 0) * records.values.std(axis=1)
+    psi = stabilisation.shapes_of(lam, diagram.participation[inside], data.H, s, 0)
+    psi = psi * records.values.std(axis=1)
     zeta = np.clip(-lam.real / np.abs(lam), *DAMPING)
     rows = zip(np.abs(lam).tolist(), zeta.tolist(), psi, strict=True)
     return diagram, [Local(omega, z, real_shape(shape).shape) for omega, z, shape in rows]
@@ -238,8 +233,7 @@ def _together(
     again: list[Local] = []
     for group in _overlapping(found, OVERLAP[last]):
         apart = [mode for k, mode in enumerate(found) if k not in group]
-        these = [found[k] for k in group]
-        setup, kept = _together(setup, these, [*others, *apart], chance, last)
+        setup, kept = _together(setup, [found[k] for k in group], [*others, *apart], chance, last)
         again += kept
     return setup, again
 
@@ -314,13 +308,13 @@ def _of_group(
         return lines, []
     model, visible = fit.model, _shares(band, fit.model)
     least = chdtri(len(model.phi) + 2, chance)
-    explained, found = bool(not last or spectral_density.excess(band, model) < least), list[Local]()
+    explained = bool(not last or spectral_density.excess(band, model) < least)
+    found = list[Local]()
     for r in range(model.free):
-        pole = float(model.omega[r]), float(model.zeta[r])
-        evidence = float(gain[r]), float(freedom[r]), fit.covariance(r), float(visible[r])
+        pole = float(model.omega[r]), float(model.zeta[r]), model.phi[:, r]
+        known = *pole, float(gain[r]), float(freedom[r]), fit.covariance(r), float(visible[r])
         kappa = harmonics.kurtosis(lines, model, r, REACH[0])
-        known = *pole, model.phi[:, r], *evidence, kappa, bool(held[r]), explained
-        found.append(Local(*known))
+        found.append(Local(*known, kappa, bool(held[r]), explained))
     return lines, found
 
 
@@ -427,9 +421,8 @@ def _combined(
     others = tuple(sorted(rejected, key=lambda pole: pole.frequency))
     first, data = max(setups, key=lambda x: len(x.records.sensors)), _densities(setups, sensors)
     unknown = np.full(data.H.shape, np.nan, complex)
-    misfit = Residuals(1.0, np.ones(1, complex), np.zeros(1), np.full(data.H.shape[:2], np.nan))
-    known = sensors, band, accepted, others, first.diagram, data, unknown, misfit
-    return Identification(*known)
+    left = Residuals(1.0, np.ones(1, complex), np.zeros(1), np.full(data.H.shape[:2], np.nan))
+    return Identification(sensors, band, accepted, others, first.diagram, data, unknown, left)
 
 
 def _of_structure(
@@ -464,9 +457,8 @@ def _judged(
     having: Sequence[tuple[_Setup, Local]], mode: ModeEstimate, setups: int, gain: float
 ) -> ModeEstimate:
     """Return a mode with what speaks for it."""
-    share = max(
-        float(support(setup.diagram, np.array([mode.pole]), np.ones(1))[0]) for setup, _ in having
-    )
+    pole, one = np.array([mode.pole]), np.ones(1)
+    share = max(float(stabilisation.support(x.diagram, pole, one)[0]) for x, _ in having)
     flags = []
     if gain < 1:
         flags.append("kept by hand: noise alone may explain as much")
