@@ -81,9 +81,7 @@ def renamed(
 
 
 def read_csv(
-    path: Path | str,
-    sensors: Sequence[str] | None = None,
-    columns: Mapping[str, str] | None = None,
+    path: Path | str, sensors: Sequence[str] | None = None, columns: Mapping[str, str] | None = None
 ) -> ModalData:
     """Return the modal data of a CSV file.
 

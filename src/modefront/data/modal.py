@@ -140,8 +140,7 @@ class ModalData(Shown):
         same = [r, *(self.modes.index(a + b - mode) for a, b in self.pairs if mode in (a, b))]
         U = np.nan_to_num(self.shape[k, same][:, sensors])
         U = U / np.maximum(np.linalg.norm(U, axis=1), np.finfo(float).tiny)[:, None]
-        out: Floats = (C + C.T) / 2 + np.median(C.diagonal()) * U.T @ U
-        return out
+        return np.asarray((C + C.T) / 2 + np.median(C.diagonal()) * U.T @ U)
 
     @cached_property
     def measured_shapes(self) -> tuple[Floats, Floats, Floats, Floats]:

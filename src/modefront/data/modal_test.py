@@ -213,15 +213,6 @@ def _rate(path: Path, time: Floats) -> float:
 
 
 @dataclass(frozen=True)
-class ByHand:
-    """Modes that are chosen by hand."""
-
-    keep: tuple[int, ...] = ()  # keep, drop: numbers of the modes that stay alone, and that do not
-    drop: tuple[int, ...] = ()
-    seeds: tuple[float, ...] = ()  # frequencies in Hz at which there is to be a mode
-
-
-@dataclass(frozen=True)
 class ModalTest:
     """A modal test."""
 
@@ -230,9 +221,11 @@ class ModalTest:
     modes: int | None  # their number, or None where it is to be found
     sets: tuple[DataSet, ...]  # the data sets with functions
     setups: tuple[Records, ...] = ()  # the records of an ambient test, which has no functions
-    chosen: ByHand = ByHand()  # what is chosen by hand
     # (3,) positions and (3,) directions of sensors that are placed, by name
     places: Mapping[str, tuple[Floats, Floats]] = field(default_factory=dict)
+    keep: tuple[int, ...] = ()  # keep, drop: numbers of the modes that stay alone, and that do not
+    drop: tuple[int, ...] = ()
+    seeds: tuple[float, ...] = ()  # frequencies in Hz at which there is to be a mode
 
 
 def read_test(path: Path) -> ModalTest:
@@ -245,8 +238,7 @@ def read_test(path: Path) -> ModalTest:
         notes = [f"{path}: the file does not say its quantity: taken for accelerance"]
     elif not is_universal(path):
         expected = "a universal file (.uff), a CSV file (.csv) or a test file (.toml)"
-        found = "no such file" if not path.exists() else "none of these"
-        raise wrong(path, expected, found)
+        raise wrong(path, expected, "none of these" if path.exists() else "no such file")
     data_set = _data_set(opt.Table(str(path), "", {}, []), known)
     data_set = replace(data_set, warnings=(*notes, *data_set.warnings))
     return ModalTest(path.stem, None, None, (data_set,))
@@ -267,7 +259,7 @@ def _from_toml(path: Path) -> ModalTest:
         windows = table.record(Windows)
     table = root.table("identify", default=None)
     given = (table.read(IDENTIFY) if table else None) or {}
-    chosen = ByHand(*(given.get(key, ()) for key in ("keep", "drop", "seed")))
+    chosen = (given.get(key, ()) for key in ("keep", "drop", "seed"))
     placed: dict[str, Sequence[float]] = root.value("geometry", PLACES, {})
     places = {
         name: (np.array(six[:3]), np.array(six[3:]) / np.linalg.norm(six[3:]))
@@ -298,15 +290,14 @@ def _from_toml(path: Path) -> ModalTest:
             root.fault(f"[geometry] {place}", "a sensor of the files", suggestion(place, sensors))
     refuse(root.faults)
     band, modes = given.get("band"), given.get("modes")
-    return ModalTest(name, band, modes, data_sets, tuple(setups), chosen, places)
+    return ModalTest(name, band, modes, data_sets, tuple(setups), places, *chosen)
 
 
 def _set_tables(root: opt.Table, ambient: bool, common: SetFiles) -> list[SetFiles]:
     out = []
     for position, table in enumerate(root.tables("set", required=True), start=1):
         name = table.text("name", default=str(position)) or str(position)
-        names = table.value("files", FILES) or []
-        files = tuple(Path(root.file).parent / file for file in names)
+        files = tuple(map(table.path, table.value("files", FILES) or []))
         columns = table.value("columns", COLUMNS, {})
         known = replace(common, name=name, files=files, columns=columns)
         if ambient:

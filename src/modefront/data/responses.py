@@ -19,11 +19,7 @@ from modefront.rounding import LARGEST
 
 EXPECTED = f"finite numbers up to {LARGEST:g}"  # what values of functions and records are
 STRAY = 300.0  # ratio of sizes from which on two channels seem to have different units
-
-UNEQUAL = 1.3
-"""Ratio of reciprocal functions from which on their sensors have different units: more than
-calibrations and mounted masses leave."""
-
+UNEQUAL = 1.3  # ratio of reciprocal functions of other units: calibrations, masses leave less
 ORDERS = {"receptance": 0, "mobility": 1, "accelerance": 2}  # differentiations of displacement
 
 
@@ -110,15 +106,11 @@ def frequency_responses(
         gamma = np.clip(np.asarray(coherence, float).reshape(H.shape), 1e-6, 1.0)
         variance = np.abs(H) ** 2 * (1 - gamma) / gamma / (blows or 1)
         scaled = blows is None
-    return FrequencyResponses(
-        np.asarray(frequency, float),
-        H,
-        quantity,
-        references or tuple(str(j + 1) for j in range(H.shape[0])),
-        responses or tuple(str(i + 1) for i in range(H.shape[1])),
-        None if variance is None else np.asarray(variance, float).reshape(H.shape),
-        scaled,
-    )
+    f = np.asarray(frequency, float)
+    references = references or tuple(str(j + 1) for j in range(H.shape[0]))
+    responses = responses or tuple(str(i + 1) for i in range(H.shape[1]))
+    variance = None if variance is None else np.asarray(variance, float).reshape(H.shape)
+    return FrequencyResponses(f, H, quantity, references, responses, variance, scaled)
 
 
 FRF, COHERENCE, TIME = 4, 6, 1  # kinds of channels, as dataset 58 of universal files has them
@@ -177,8 +169,8 @@ def assemble(
         key = references.index(channel.reference), responses.index(channel.response)
         groups.setdefault(key, []).append(channel)
     blows = max(map(len, groups.values()))
-    frequency = channels[0].frequency
-    H = np.full((blows, len(references), len(responses), len(frequency)), np.nan, complex)
+    f = channels[0].frequency
+    H = np.full((blows, len(references), len(responses), len(f)), np.nan, complex)
     known = np.full((2, *H.shape[1:]), np.nan)  # coherence, and variance
     for (j, i), group in groups.items():
         for b, channel in enumerate(group):
@@ -192,23 +184,11 @@ def assemble(
     # each measurement of a reference that was hit for several ones.
     noises = [{x.noise for x in channels if x.reference == each} for each in references]
     noise = tuple(x for each in noises for x in each if x and len(each) == 1 and not turned)
-    data = frequency_responses(
-        frequency,
-        H if blows > 1 else H[0],
-        quantity,
-        references=references,
-        responses=responses,
-        coherence=coherence,
-        variance=variance,
-    )
-    noise = noise if len(noise) == len(references) else ()
-    data = replace(data, decay=decay, force_noise=noise)
-    warnings = [
-        *_units(name, data, groups, dead),
-        *_reciprocity(name, data, turned),
-        *_driving_points(data, groups),
-    ]
-    return DataSet(name, data, tuple(warnings))
+    noise, H = noise if len(noise) == len(references) else (), H if blows > 1 else H[0]
+    data = frequency_responses(f, H, quantity, coherence=coherence, variance=variance)
+    data = replace(data, references=references, responses=responses, decay=decay, force_noise=noise)
+    warnings = *_units(name, data, groups, dead), *_reciprocity(name, data, turned)
+    return DataSet(name, data, (*warnings, *_driving_points(data, groups)))
 
 
 def _quantity(channels: Sequence[Channel], declared: str) -> str:

@@ -22,7 +22,7 @@ from modefront._typing import Complexes, Floats, Ints
 from modefront.data.impact import blows_of
 from modefront.data.modal import ModalData
 from modefront.data.responses import COHERENCE, FORCE, FRF, TIME, Channel
-from modefront.errors import Fault, InputError, reason, refuse
+from modefront.errors import Fault, refuse, refusing
 from modefront.inputs import MOST_DATA, counted, fortran, once, read_text_bytes, wrong
 from modefront.outputs import write_text
 from modefront.rounding import LARGEST
@@ -37,20 +37,15 @@ AXES = {1: "X", 2: "Y", 3: "Z", 4: "RX", 5: "RY", 6: "RZ"}  # directions by thei
 SUFFIXES = (".uff", ".unv", ".uf", ".bunv", ".ufb")  # ends of names of universal files
 REAL = {2: 1, 5: 2}  # numbers of a value by the type of data
 NAMES = tuple(AXES.values())  # directions in the order of the components
-
-KNOWN = (15, 18, 55, 58, 2411, 2420)
-"""Datasets that are read, whose numbers may have blanks before them as no other line has."""
+KNOWN = (15, 18, 55, 58, 2411, 2420)  # datasets that are read; no other line may begin as theirs
 
 OPENING = re.compile(
     rb"(?:\xef\xbb\xbf)?\s*^[ ]{4}-1[ \t]*\r?\n[ ]*([0-9]{1,5})(b?)(?!\S)([^\n]*)(?:\n|\Z)",
     re.MULTILINE,
 )
 HEADER, RECORD_7 = 11, 6  # lines of dataset 58 before its numbers; that with their number, from 0
-Point = tuple[int, int, int, Floats]
-"""A node: its number, the systems of its coordinates and its displacement, and coordinates (3,)."""
-
-System = tuple[int, Floats, Floats]
-"""A system of coordinates: its type, its axes (3, 3) in rows, and its origin (3,)."""
+Point = tuple[int, int, int, Floats]  # node, systems of coordinates and displacement, coordinates
+System = tuple[int, Floats, Floats]  # of coordinates: type, axes (3, 3) in rows, and origin (3,)
 
 
 @dataclass(frozen=True)
@@ -84,12 +79,9 @@ def _decoded(
         raise wrong(path, what, f"datasets {', '.join(map(str, numbers))} only", "datasets")
     out: dict[int, list[Any]] = {number: [] for number in readers}
     for block in (block for block in known if block.number in readers):
-        try:
+        kinds = ValueError, LookupError, OverflowError
+        with refusing(path, f"a dataset {block.number}", *kinds, place=block.place):
             out[block.number] += readers[block.number](block)
-        except InputError:
-            raise
-        except (ValueError, IndexError, KeyError, OverflowError) as error:
-            raise wrong(path, f"a dataset {block.number}", reason(error), block.place) from None
     return out
 
 
@@ -218,8 +210,7 @@ def _values(block: Block, body: bytes, record: tuple[int, int, int]) -> tuple[Fl
     if sum(points) == numbers.size and max(points[1:], default=0) > min(points[:-1], default=0):
         raise ValueError("a line with fewer values than one behind it")
     rows = numbers.reshape(-1, columns).T
-    of_y = rows[1 - even :]
-    pairs = np.ascontiguousarray(of_y.T)
+    pairs = np.ascontiguousarray(rows[1 - even :].T)
     return rows[0], (pairs.view(complex) if is_complex else pairs)[:, 0]
 
 
@@ -478,10 +469,7 @@ def _axes_at(point: Floats, system: System | None) -> Floats:
 
 
 def _assembled(
-    file: Path,
-    rows: Sequence[_Mode],
-    points: Sequence[Point],
-    systems: Mapping[int, System],
+    file: Path, rows: Sequence[_Mode], points: Sequence[Point], systems: Mapping[int, System]
 ) -> NodalModes:
     """Return all modes as arrays; modes of the same number are those of a further data set."""
     placed, nodes_of = dict[tuple[str, int], _Mode](), dict[str, Ints]()

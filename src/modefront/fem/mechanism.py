@@ -103,12 +103,17 @@ def constraint_rows(
     other = _motions(X, bodies, node, body)
     translations, one = np.arange(other.shape[0]) % 6 < 3, sparse.eye_array(H.shape[0]).tocsr()
     fixed = np.flatnonzero(held & (bodies.home >= 0)[:, None])
-    rows = [
-        one[(6 * node[:, None] + np.arange(3)).ravel()],
-        *(weight for _, weight in following),
-        one[fixed],
-        *(_resisted(block, H.shape[0]) for block in soft),
-    ]
+    own = one[(6 * node[:, None] + np.arange(3)).ravel()]
+    rows = [own, *(weight for _, weight in following), one[fixed]]
+    for block in soft:  # rows of displacements that its elements resist
+        K = sum(block.prestress.values(), next(iter(block.stiffness.values())))
+        scale = np.sqrt(np.diagonal(K, axis1=1, axis2=2).clip(0))
+        unit = np.where(scale > 0, scale, 1)
+        values, vectors = np.linalg.eigh(K / unit[:, :, None] / unit[:, None])
+        vectors = vectors * (values > ACCUMULATED * values[:, -1:])[:, None]
+        resisted = np.swapaxes(vectors, 1, 2) * unit[:, None]
+        columns = np.repeat(block.dofs(), resisted.shape[1], axis=0)
+        rows.append(sparse_rows(resisted.reshape(len(columns), -1), columns, H.shape[0]))
     same = sparse.vstack([other[translations], *(H[slave] for slave, _ in following)]).tocsr()
     A = sparse.vstack(rows).tocsr()
     same.resize((A.shape[0], H.shape[1]))
@@ -124,18 +129,6 @@ def _motions(X: Floats, bodies: Bodies, node: Ints, body: Ints) -> sparse.csr_ar
     P[:, :, 3:] /= bodies.extent[body, None, None]
     columns = np.repeat(6 * body.clip(0)[:, None] + np.arange(6), 6, axis=0)
     return sparse_rows(P.reshape(-1, 6), columns, 6 * len(bodies.extent))
-
-
-def _resisted(block: Block, size: int) -> sparse.csr_array:
-    """Return the rows (.., 6 nodes) of displacements that elements of a block resist."""
-    K = sum(block.prestress.values(), next(iter(block.stiffness.values())))
-    scale = np.sqrt(np.diagonal(K, axis1=1, axis2=2).clip(0))
-    unit = np.where(scale > 0, scale, 1)
-    values, vectors = np.linalg.eigh(K / unit[:, :, None] / unit[:, None])
-    vectors = vectors * (values > ACCUMULATED * values[:, -1:])[:, None]
-    rows = np.swapaxes(vectors, 1, 2) * unit[:, None]
-    columns = np.repeat(block.dofs(), rows.shape[1], axis=0)
-    return sparse_rows(rows.reshape(len(columns), -1), columns, size)
 
 
 def null_space(C: sparse.csr_array) -> Floats:
@@ -216,8 +209,7 @@ def _describe(X: Floats, bodies: Bodies, columns: Ints, N: Floats, parts: int) -
     others = np.flatnonzero((bodies.home >= 0) & ~np.isin(bodies.home, moving))
     if len(others):
         distance, first = scipy.spatial.KDTree(X[others]).query(X[nodes])
-        near = np.flatnonzero(distance <= WRITTEN * np.ptp(X, axis=0).max())
-        for k in near[:1]:
+        for k in np.flatnonzero(distance <= WRITTEN * np.ptp(X, axis=0).max())[:1]:
             pair = f"Nodes {nodes[k]} and {others[first[k]]}"
             message += f". {pair} are at the same place but not the same node: merge them"
     return message

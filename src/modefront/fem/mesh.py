@@ -123,8 +123,7 @@ def read_mesh(path: str | Path) -> Mesh:
     if importlib.util.find_spec("meshio") is None:
         raise wrong(path, "meshio for meshes (`pip install modefront[mesh]`)", "no such package")
     memory = min(available_memory(), MEMORY + PER_BYTE * file_size(path, "a mesh", MOST_DATA))
-    reader = f"{__name__}:read_with_meshio"
-    points, blocks, sets = isolated(reader, path, READABLE, memory=memory)
+    points, blocks, sets = isolated(f"{__name__}:read_with_meshio", path, READABLE, memory=memory)
     if points.ndim != 2 or not 1 <= points.shape[1] <= 3:
         raise wrong(path, "nodes in up to 3 dimensions", str(points.shape))
     cells = tuple(Cells(*block) for block in blocks)
@@ -180,7 +179,14 @@ def read_with_meshio(path: Path) -> tuple[Any, ...]:
     for name, kind, cells in _named_cells(raw):
         blocks.setdefault((str(name), kind), []).append(cells)
     named = [(*block, np.concatenate(cells)) for block, cells in blocks.items()]
-    return np.asarray(raw.points, dtype=float), named, _node_sets(raw)
+    # Nodes by the name of their set, or of their MED group.
+    sets = {str(name): np.asarray(nodes, dtype=np.int64) for name, nodes in raw.point_sets.items()}
+    tags = np.asarray(raw.point_data.get("point_tags", []))
+    for family, names in getattr(raw, "point_tags", {}).items():
+        for name in map(str, names):
+            sets[name] = np.union1d(sets.get(name, []), np.flatnonzero(tags == family))
+    sets = {name: nodes.astype(np.int64) for name, nodes in sets.items()}
+    return np.asarray(raw.points, dtype=float), named, sets
 
 
 def _from_file(file: Any, dtype: Any = float, count: int = -1, *others: Any, **named: Any) -> Any:
@@ -213,16 +219,6 @@ def _check_sections(content: bytes) -> None:
     for _, kind, tags, *others in (map(int, line.split()) for line in elements[1:]):
         if len(others) - tags != CORNERS.get(kind, len(others) - tags):
             raise ValueError(f"{len(others) - tags} nodes of an element of type {kind}")
-
-
-def _node_sets(raw: Any) -> dict[str, Ints]:
-    """Nodes by the name of their set, or of their MED group."""
-    out = {str(name): np.asarray(nodes, dtype=np.int64) for name, nodes in raw.point_sets.items()}
-    tags = np.asarray(raw.point_data.get("point_tags", []))
-    for family, names in getattr(raw, "point_tags", {}).items():
-        for name in map(str, names):
-            out[name] = np.union1d(out.get(name, []), np.flatnonzero(tags == family))
-    return {name: nodes.astype(np.int64) for name, nodes in out.items()}
 
 
 def _named_cells(raw: Any) -> Iterator[tuple[str, str, Ints]]:

@@ -65,10 +65,9 @@ def without_sine(
 
 def kurtosis(lines: Transforms, model: Density, mode: int, reach: float) -> tuple[float, float]:
     """Return kappa of a mode within so many half bandwidths, and its deviation for a normal one."""
-    distance, spacing = np.abs(lines.omega - model.omega[mode]), lines.omega[1] - lines.omega[0]
-    inside = np.flatnonzero(
-        distance <= max(reach * model.zeta[mode] * model.omega[mode], 4 * spacing)
-    )
+    omega, spacing = model.omega[mode], lines.omega[1] - lines.omega[0]
+    distance = np.abs(lines.omega - omega)
+    inside = np.flatnonzero(distance <= max(reach * model.zeta[mode] * omega, 4 * spacing))
     near = slice(inside[0], inside[-1] + 1)
     _, root, half = _likelihood(lines, near, model)
     N = (half @ half[:, mode].conj()[..., None])[..., 0]

@@ -42,12 +42,8 @@ from modefront.identification.noise import square
 from modefront.identification.problem import RESIDUALS, Problem, combined, gram, primitives
 from modefront.identification.scan import Scan, scan
 
-FINE, COARSE = 1e-4, 1e-2
-"""Squared steps in standard deviations that end an iteration: for results, and for choices."""
-
-MOST_EVALUATIONS = 40
-"""Evaluations after which a fit has failed; simulated tests take three to fifteen."""
-
+FINE, COARSE = 1e-4, 1e-2  # squared steps, in deviations, that end it: for results, for choices
+MOST_EVALUATIONS = 40  # after which a fit has failed; simulated tests take three to fifteen
 ROUNDING = 1e-13  # share of the squares of a column that may be rounding
 BEND = 1 / 8  # width of a block of lines over the distance of the nearest pole
 
@@ -236,8 +232,7 @@ def thinned(fit: Fit, lam: Complexes) -> Problem:
 
 def _best(inverse: Floats, T: Floats, rho: Floats) -> Floats:
     """Return the linear parameters, (responses, linear), from products with the primitives."""
-    right = np.einsum("jqa,jiq->ia", T, rho)
-    return (inverse @ right[..., None])[..., 0]
+    return (inverse @ np.einsum("jqa,jiq->ia", T, rho)[..., None])[..., 0]
 
 
 def maximise(
@@ -286,8 +281,7 @@ def _inverse(G: Floats) -> Floats:
     diagonal = np.einsum("iaa->ia", G)
     scale = 1 / np.sqrt(np.where(diagonal > 0, diagonal, 1.0))
     scaled = G * scale[:, :, None] * scale[:, None, :]
-    unit = np.eye(G.shape[1])
-    scaled = scaled + unit * np.where(diagonal > 0, 1e-14, 1.0)[:, None, :]
+    scaled = scaled + np.eye(G.shape[1]) * np.where(diagonal > 0, 1e-14, 1.0)[:, None, :]
     out: Floats = np.linalg.inv(scaled) * scale[:, :, None] * scale[:, None, :]
     return (out + out.transpose(0, 2, 1)) / 2
 

@@ -4,6 +4,7 @@ import json
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import cached_property
+from itertools import compress
 from pathlib import Path
 from typing import Any
 
@@ -14,11 +15,11 @@ from threadpoolctl import threadpool_limits
 from modefront._typing import Complexes
 from modefront.data.csv import is_reserved, write_covariance, write_csv
 from modefront.data.modal import ModalData
-from modefront.data.modal_test import ByHand, ModalTest, read_test
+from modefront.data.modal_test import ModalTest, read_test
 from modefront.data.uff import write_uff55
 from modefront.errors import Fault, InputError, UnfinishedError
 from modefront.identification.methods import ambient, hammer
-from modefront.identification.record import Identification, ModeEstimate, Rejected
+from modefront.identification.record import Identification, Rejected
 from modefront.identification.sets import CombinedModes, combine
 from modefront.inputs import wrong
 from modefront.outputs import write_text
@@ -62,11 +63,10 @@ class IdentifiedTest(Shown):
     @property
     def warnings(self) -> list[str]:
         """What is to be looked at: in the modes, the files, and the fit of each data set."""
+        sets = list(zip(self.names, self.identified, self.modes.index, strict=True))
         modes = [
             f"mode {r + 1} of set {name!r}: {'; '.join(each.modes[k].flags)}"
-            for name, each, of_set in zip(
-                self.names, self.identified, self.modes.index, strict=True
-            )
+            for name, each, of_set in sets
             for r, k in enumerate(of_set)
             if k >= 0 and each.modes[k].flags
         ]
@@ -82,13 +82,8 @@ class IdentifiedTest(Shown):
             for setup in self.test.setups
             for name in setup.still
         ]
-        fitted = [
-            f"set {name!r}: {text}"
-            for name, identification in zip(self.names, self.identified, strict=True)
-            for text in _warnings(identification)
-        ]
-        long = any(x.duration > 60 * LONG for x in self.test.setups)
-        if long and self.modes.data.modes:
+        fitted = [f"set {name!r}: {text}" for name, each, _ in sets for text in _warnings(each)]
+        if any(x.duration > 60 * LONG for x in self.test.setups) and self.modes.data.modes:
             read.append(
                 f"standard deviations of records of more than {LONG} min are up to a quarter too "
                 "small where many modes share coloured forces"
@@ -101,10 +96,10 @@ class IdentifiedTest(Shown):
         Raises InputError for a file that ends in neither, that has no folder, or whose columns
         sensors would take.
         """
-        path = writable(path)
+        path, sensors = writable(path), self.data.sensors
         written = [path]
         if path.suffix.lower() == ".uff":
-            sensors, modes = self.data.sensors, list[dict[int, tuple[complex, Complexes]]]()
+            modes = list[dict[int, tuple[complex, Complexes]]]()
             for each, of_set in zip(self.identified, self.modes.index, strict=True):
                 at = [sensors.index(name) for name in each.responses]
                 modes.append({})
@@ -115,7 +110,6 @@ class IdentifiedTest(Shown):
                     modes[-1][number] = mode.pole, shape
             write_uff55(path, self.names, modes, sensors, self.data.pairs)
         else:
-            sensors = self.data.sensors
             clashing = [name for name in sensors if is_reserved(name, sensors)]
             if clashing:
                 expected = "names of sensors that are no columns of modal data"
@@ -130,10 +124,8 @@ class IdentifiedTest(Shown):
 
     def as_plain(self) -> dict[str, Any]:
         """Return all that was identified as plain data; complex numbers are [real, imaginary]."""
-        sets = [
-            {"name": name} | _plain_set(identification)
-            for name, identification in zip(self.names, self.identified, strict=True)
-        ]
+        named = zip(self.names, self.identified, strict=True)
+        sets = [{"name": name} | _plain_set(identification) for name, identification in named]
         said = {"test": self.test.name, "warnings": self.warnings, "sets": sets}
         return json.loads(json_of(said))
 
@@ -181,9 +173,8 @@ def identify(
     path = Path(test)
     read = read_test(path)
     band = band or read.band
-    keep, drop = keep or read.chosen.keep, drop or read.chosen.drop
-    seeds = seeds or read.chosen.seeds
-    read = replace(read, chosen=ByHand(tuple(keep), tuple(drop), tuple(seeds)))
+    keep, drop, seeds = keep or read.keep, drop or read.drop, seeds or read.seeds
+    read = replace(read, keep=tuple(keep), drop=tuple(drop), seeds=tuple(seeds))
     low, high = _ends(path, read, band)
     for f in seeds:
         if not low <= f <= high:
@@ -199,7 +190,7 @@ def identify(
             if not 1 <= number <= len(index[0]):
                 expected = f"numbers of modes, from 1 to {len(index[0])}"
                 raise wrong(path, expected, str(number), option)
-    parts = [_chosen(*each, read.chosen) for each in zip(identified, table, index, strict=True)]
+    parts = [_chosen(read, *each) for each in zip(identified, table, index, strict=True)]
     left, numbered = zip(*parts, strict=True)
     return IdentifiedTest(read, left, combine(names, left), numbered)
 
@@ -213,7 +204,7 @@ def _identified(
 
 
 def _chosen(
-    each: Identification, table: Identification, of_set: Sequence[int], chosen: ByHand
+    test: ModalTest, each: Identification, table: Identification, of_set: Sequence[int]
 ) -> tuple[Identification, tuple[int, ...]]:
     """Return an identification without modes that were not chosen, and the numbers of the others.
 
@@ -225,17 +216,13 @@ def _chosen(
     numbers = np.zeros(len(f), int)
     numbers[columns] = [of_set.index(row) + 1 for row in rows.tolist()]
     half = f * [mode.damping for mode in each.modes]
-    held = (np.abs(np.subtract.outer(f, np.array(chosen.seeds))) <= half[:, None]).any(axis=1)
-    out = (numbers > 0) & ~held & np.isin(numbers, chosen.drop)
-    if chosen.keep:
-        out |= (numbers > 0) & ~held & ~np.isin(numbers, chosen.keep)
-    modes, rejected = list[ModeEstimate](), list(each.rejected)
-    for mode, gone in zip(each.modes, out, strict=True):
-        if gone:
-            rejected.append(Rejected(mode.frequency, mode.damping, "left out by hand"))
-        else:
-            modes.append(mode)
-    kept = replace(each, modes=tuple(modes), rejected=tuple(rejected))
+    held = (np.abs(np.subtract.outer(f, np.array(test.seeds))) <= half[:, None]).any(axis=1)
+    out = (numbers > 0) & ~held & np.isin(numbers, test.drop)
+    if test.keep:
+        out |= (numbers > 0) & ~held & ~np.isin(numbers, test.keep)
+    modes, gone = (tuple(compress(each.modes, some)) for some in (~out, out))
+    rejected = (Rejected(mode.frequency, mode.damping, "left out by hand") for mode in gone)
+    kept = replace(each, modes=modes, rejected=(*each.rejected, *rejected))
     return kept, tuple(numbers[~out].tolist())
 
 

@@ -27,8 +27,7 @@ class Problem:
     weight: Floats
     order: int  # q
     decay: float = 0.0  # what an exponential window has decayed by at the end of the record, d T
-    # noise of the force at each reference, where it is known; times in the unit of 1 / s
-    force_noise: tuple[ForceNoise, ...] = ()
+    force_noise: tuple[ForceNoise, ...] = ()  # at each reference, if known; times in that of 1 / s
 
     @cached_property
     def count(self) -> int:

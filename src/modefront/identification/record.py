@@ -10,8 +10,7 @@ from modefront.data.responses import FrequencyResponses
 from modefront.identification.shapes import RealShape
 from modefront.identification.stabilisation import StabilisationDiagram
 
-MOST_COVARIED = 200
-"""Responses of which covariances of shapes are kept: a file of 40 modes then has 25 MB."""
+MOST_COVARIED = 200  # responses with covariances of shapes: a file of 40 modes then has 25 MB
 
 
 # 11 fields: what a mode is, and what speaks for it.
@@ -26,17 +25,12 @@ class ModeEstimate:
     # (responses,) standard deviations of the real shape of unit norm; NaN where the response was
     # not measured, or shows nothing but noise of any mode
     shape_std: Floats
-    # (references,) factors that go with the complex shape as given, before rotation
-    participation: Complexes
+    participation: Complexes  # (references,) factors of the complex shape before its rotation
     # (responses, responses) of the real shape, None for more than `MOST_COVARIED`
     shape_covariance: Floats | None = None
-    # how much better the fit is than that without the mode, 2 Delta J over the noise, over the
-    # least that a mode needs
-    gain: float = np.nan
-    # share of the orders of the diagram, from the first one with its pole, that have it
-    support: float = np.nan
-    # its greatest share, over all functions, in the sum of all modes at its frequency
-    visibility: float = np.nan
+    gain: float = np.nan  # 2 Delta J of the fit over the noise, over the least that a mode needs
+    support: float = np.nan  # share of the orders from the first one with its pole that have it
+    visibility: float = np.nan  # greatest share, in any function, of all modes at its frequency
     flags: tuple[str, ...] = ()  # reasons to look at it
 
     @property
@@ -63,13 +57,10 @@ class Rejected:
 class Residuals:
     """Correlation and size of the errors of the data, from the residuals of a fit."""
 
-    # weighted sum of squares over the degrees of freedom; 1 where the variance is right
-    chi2: float
+    chi2: float  # weighted sum of squares over degrees of freedom; 1 where the variance is right
     correlation: Complexes  # (lags,) of a line with the next ones
     force: Floats  # (references,) b, variance of the noise of the force channel, relative
-    # (references, responses) norm of the residual over that of the function; NaN where the function
-    # was not measured
-    share: Floats
+    share: Floats  # (references, responses) norm over that of the function; NaN if not measured
 
     @property
     def widening(self) -> float:

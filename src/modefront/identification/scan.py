@@ -14,20 +14,12 @@ from modefront.identification.problem import Problem, gram
 from modefront.rounding import TINY
 
 HEAVIEST = 0.1  # greatest damping ratio of the poles that are looked for in residuals
-
-NEIGHBOURHOOD = 32
-"""Half bandwidths on either side of a pole in which poles of the same damping tell the noise."""
-
+NEIGHBOURHOOD = 32  # half bandwidths about a pole in which those of its damping tell the noise
 UPPER = 0.8  # share of these poles that explain less than the level that tells the noise
-
-DRAWS, SEED = 1000, 1
-"""Matrices of noise that tell what poles explain of it, and the seed of their random numbers."""
-
+DRAWS, SEED = 1000, 1  # matrices of noise that tell what poles explain of it, and their seed
 MOST_PLACES = 1 << 18  # places of the grid of lines, at most
 PORTION = 32  # responses whose products with poles are computed at once
-
-ROUNDING = 1e-12
-"""Share of the greatest energy of a pole's function in the lines below which there is none."""
+ROUNDING = 1e-12  # share of the greatest energy of a pole's function below which there is none
 
 LEAST_OWN = 0.01
 """Share of a pole's function that modes of the fit do not make up, at least: of less, rounding and
@@ -43,8 +35,7 @@ def alike(pole: complex, others: Complexes) -> Floats:
 class Scan:
     """Poles all over the band, and what each explains of the residuals of a fit."""
 
-    # (poles,) half bandwidths go up by factors of two from the distance of lines, as do steps
-    lam: Complexes
+    lam: Complexes  # (poles,) half bandwidths, and steps, go up from those of lines by factors of 2
     gain: Floats  # (poles,) 2 Delta J of each in units of its noise
     L: Complexes  # (poles, references) its participation factors
     # (poles,) variance of the noise, as poles of the same damping find it in the neighbourhood; at

@@ -20,20 +20,13 @@ from modefront.rounding import TINY
 
 FALSE = 1e-3  # expected number of modes in a band that noise alone makes
 MOST_ROUNDS = 20  # rounds in which poles are added, at most
-
-OVERDAMPED = 0.9
-"""Damping ratio from which on a pole and its conjugate are nearly one and the same real pole."""
+OVERDAMPED = 0.9  # damping ratio from which on a pole and its conjugate are nearly one real pole
 
 LEAST_UNLIKE = 1e-6
 """Least squared share of the derivative by a pole that no residual term can make up. In the normal
 equations rounding takes some 1e-8; poles within the band have 0.1 and more."""
-
-MOST_EVALUATIONS = 20
-"""Evaluations of the model for a choice, which need not be at the very maximum."""
-
-CLOSEST = 0.5
-"""Distance of poles over the greater of their half bandwidths below which they are not told apart
-without a difference of shapes."""
+MOST_EVALUATIONS = 20  # of the model for a choice, which need not be at the very maximum
+CLOSEST = 0.5  # distance of poles, in half bandwidths, below which only shapes tell them apart
 
 TRACES = 10.0
 """Gain of a pole over what the ones that are added already explain of it: a missing mode bends the
@@ -199,8 +192,7 @@ def paired(fit: Fit) -> Fit:
         start = fit.lam.copy()
         start[[r, s]] = (lam[r] + lam[s]) / 2
         trial = maximise(task, start, fit.L, pairs=(*pairs, (r, s)))
-        lost = 2 * (trial.cost - fit.cost) / noise[r]
-        if lost < chdtri(PAIR_FREEDOM, APART):
+        if 2 * (trial.cost - fit.cost) / noise[r] < chdtri(PAIR_FREEDOM, APART):
             L = trial.L.copy()
             for pair in map(list, trial.pairs):
                 L[pair] = np.linalg.solve(plane_basis(trial.phi[pair]).T, L[pair])

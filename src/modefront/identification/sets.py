@@ -38,9 +38,7 @@ class CombinedModes:
     # spread of the sets in them
     data: ModalData
     damping_std: Floats  # (sets, modes) standard deviations, spread included
-    # (modes, 2) standard deviations between sets of frequency and damping, 0 where the sets agree
-    # within theirs
-    spread: Floats
+    spread: Floats  # (modes, 2) deviations of frequency and damping between sets; 0 if these agree
     index: tuple[tuple[int, ...], ...]  # (sets, modes) which mode of each set it is; -1 for none
 
 

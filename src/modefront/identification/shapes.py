@@ -19,8 +19,7 @@ class RealShape:
     shape: Floats  # (responses,) its real part
     collinearity: float  # MPC, modal phase collinearity, from 0 to 1
     norm: float  # that of the real part before it was scaled
-    # the rotation, exp(-i theta), with the sign that makes the greatest component positive
-    turn: complex
+    turn: complex  # the rotation, exp(-i theta); its sign makes the greatest component positive
     # (responses, 1 or 2) orthonormal shapes of which none changes in the span of them: the shape
     # itself, and the other one of a pair
     plane: Floats

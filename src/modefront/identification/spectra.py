@@ -24,9 +24,7 @@ LEFT = 0.05  # exponential window at the longest lag
 BLOCK = 0.1  # width of a block of lines over the distance from the nearest pole
 ROUNDING = 1e-9  # least background over the greatest power of a band
 LEAST_SHARE = 1e-9  # share of a line that is left where a sine takes all of it, for rounding
-
-SMOOTH = 0.02
-"""Share of the lines over which the size of half spectra is averaged for their weights."""
+SMOOTH = 0.02  # share of the lines over which half spectra are averaged for their weights
 
 
 @dataclass(frozen=True)
@@ -34,8 +32,7 @@ class Transforms:
     """Transforms of the records of one setup at the lines of a band."""
 
     omega: Floats  # (lines,) rad/s
-    # (sensors, lines), scaled so that the mean of F F^* is a two-sided spectral density
-    F: Complexes
+    F: Complexes  # (sensors, lines), scaled: the mean of F F^* is a two-sided spectral density
     order: int  # differentiations of the displacement in the records
     share: Floats  # (lines,) how much of a line there is beside the sines that were taken off
     sines: tuple[float, ...] = ()  # rad/s, of these
@@ -102,7 +99,7 @@ def half_spectra(records: Records, low: float, high: float) -> tuple[FrequencyRe
     inside = (f >= low) & (f <= high)
     cross = (Y[:, inside] @ Y[:, inside].conj().T).real
     U = np.linalg.eigh(cross)[1][:, ::-1][:, :REFERENCES]
-    decay = -np.log(LEFT) * records.rate / lags
+    decay = float(-np.log(LEFT) * records.rate / lags)
     window = np.exp(-decay * np.arange(lags) / records.rate)
     window[0] = 0.0
     parts = []
@@ -113,9 +110,7 @@ def half_spectra(records: Records, low: float, high: float) -> tuple[FrequencyRe
     kept = (lines >= low) & (lines <= high)
     H: Complexes = np.array(parts)[..., kept]
     names = tuple(f"principal {j + 1}" for j in range(len(H)))
-    data = FrequencyResponses(
-        lines[kept], H, "receptance", names, records.sensors, decay=float(decay)
-    )
+    data = FrequencyResponses(lines[kept], H, "receptance", names, records.sensors, decay=decay)
     power = square(H).mean(axis=(0, 1))
     width = max(int(SMOOTH * len(power)), 1)
     smooth = np.convolve(np.pad(power, width, mode="edge"), np.ones(2 * width + 1), "valid")

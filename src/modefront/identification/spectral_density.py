@@ -42,10 +42,7 @@ import scipy.linalg as la
 from modefront._typing import Complexes, Floats, Ints
 
 PRIOR = 1.0  # lines that the prior of the background weighs, beyond the number of sensors
-
-TOLERANCE = 1e-2
-"""Change of the cost below which a maximum is reached: a half is one standard deviation."""
-
+TOLERANCE = 1e-2  # change of the cost at a maximum, at most: a half is one standard deviation
 MOST_STEPS = 60  # steps to a maximum, at most
 MOST_OF_BACKGROUND = 0.9  # share of the background that a step takes away, at most
 SHORTEST = 1e-3  # share of a step of the background below which it is left out
@@ -53,10 +50,7 @@ TERMS = 2  # terms of what a force moves besides, over frequency: a constant and
 COHERENT = 0.25  # standard deviation of either term at the ends of a band, over a mode's peak
 LONGEST = 1.0  # change of ln zeta, and of ln omega in half bandwidths, in one step, at most
 LEAST_DAMPING, GREATEST_DAMPING = 1e-7, 0.5  # limits of damping ratios in a search
-
-LEAST_KNOWN = 1e-13
-"""Least eigenvalue of the scaled information of what is determined, for rounding."""
-
+LEAST_KNOWN = 1e-13  # least eigenvalue of the scaled information that is more than rounding
 TINY = 1e-100
 
 
@@ -92,8 +86,7 @@ class Density:
     root: Complexes  # (modes, modes) L
     background: Floats  # (sensors, sensors) B
     free: int  # number of the modes that are in the band, the first ones
-    # (sensors, terms x free) R, all constants first; no terms for a model without it
-    coherent: Floats
+    coherent: Floats  # (sensors, terms x free) R, all constants first; no terms for none
     middle: float  # rad/s, where the slopes of R are 0
     # (terms x free,) of normal distributions of the columns of R a priori, about 0
     precision: Floats = field(default_factory=lambda: np.zeros(0))
@@ -162,17 +155,10 @@ class Density:
         power = self.force[mode, mode].real * np.average(np.abs(h) ** 2, weights=band.count)
         root: Complexes = np.linalg.qr(self.root[kept].conj().T)[1].conj().T
         terms = np.arange(self.coherent.shape[1]) % max(self.free, 1) != mode
-        return replace(
-            self,
-            omega=self.omega[kept],
-            zeta=self.zeta[kept],
-            phi=self.phi[:, kept],
-            root=root,
-            background=self.background + power * np.outer(phi, phi),
-            free=self.free - (mode < self.free),
-            coherent=self.coherent[:, terms],
-            precision=self.precision[terms],
-        )
+        omega, zeta, others = self.omega[kept], self.zeta[kept], self.phi[:, kept]
+        B, R = self.background + power * np.outer(phi, phi), self.coherent[:, terms]
+        out = replace(self, omega=omega, zeta=zeta, phi=others, root=root, background=B, coherent=R)
+        return replace(out, free=self.free - (mode < self.free), precision=self.precision[terms])
 
 
 class Fit:
@@ -458,29 +444,16 @@ def _moved(model: Density, step: Floats) -> Density:
     phi = np.hstack([model.phi[:, :m] + change[:, :m], model.phi[:, m:]])
     rows, columns, units = _entries(len(L))
     np.add.at(L, (rows, columns), units * root)
-    new_omega, new_zeta = model.omega.copy(), model.zeta.copy()
+    w, z, R = model.omega.copy(), model.zeta.copy(), model.coherent + change[:, m:]
     reach = LONGEST * np.maximum(model.zeta[:m], 1e-4)
-    new_omega[:m] *= np.exp(np.clip(omega, -reach, reach))
-    new_zeta[:m] *= np.exp(np.clip(zeta, -LONGEST, LONGEST))
-    new_zeta = np.clip(new_zeta, LEAST_DAMPING, GREATEST_DAMPING)
-    return _normalised(
-        replace(
-            model,
-            omega=new_omega,
-            zeta=new_zeta,
-            phi=phi,
-            root=L,
-            coherent=model.coherent + change[:, m:],
-        )
-    )
+    w[:m] *= np.exp(np.clip(omega, -reach, reach))
+    z[:m] *= np.exp(np.clip(zeta, -LONGEST, LONGEST))
+    z = np.clip(z, LEAST_DAMPING, GREATEST_DAMPING)
+    return _normalised(replace(model, omega=w, zeta=z, phi=phi, root=L, coherent=R))
 
 
 def _normalised(model: Density) -> Density:
     """Return the same model with shapes of unit norm."""
     norm = np.linalg.norm(model.phi, axis=0)
-    return replace(
-        model,
-        phi=model.phi / norm,
-        root=model.root * norm[:, None],
-        coherent=model.coherent / np.resize(norm[: model.free], model.coherent.shape[1]),
-    )
+    R = model.coherent / np.resize(norm[: model.free], model.coherent.shape[1])
+    return replace(model, phi=model.phi / norm, root=model.root * norm[:, None], coherent=R)

@@ -19,15 +19,9 @@ from modefront.rounding import TINY
 
 MOST_POLES = 160  # poles at the highest order: some four for each of forty modes
 MOST_ORDERS = 25  # orders of a diagram; more add no information to clusters of poles
-
-CUT = 0.05
-"""Distance within which poles of neighbouring orders are stable, and belong to one cluster."""
-
+CUT = 0.05  # distance within which poles of neighbouring orders are stable, and of one cluster
 LEAST_ORDERS = 3  # orders on which a cluster has to be before a fit starts from it
-
-SHAPE_LINES = 4096
-"""Lines from which shapes of the diagram are taken where there are more, those at poles apart."""
-
+SHAPE_LINES = 4096  # from which shapes are taken where there are more, those at poles apart
 NEXT = 8  # lines on either side of a pole that its shape is taken from
 LEAST = 1e-12  # share of the mean motion by which none at all is told apart by an indicator
 MOST_DAMPING = 0.3  # damping ratio from which on a pole is no mode
@@ -42,8 +36,7 @@ class StabilisationDiagram:
     participation: Complexes  # (poles, references)
     stable: Bools  # (poles,) whether the nearest pole of the order below is within `CUT`
     orders: tuple[int, ...]  # all orders
-    # positions of the poles that are nearest to the median of their clusters, by frequency
-    clusters: Ints
+    clusters: Ints  # positions of the poles nearest to the medians of clusters, by frequency
 
     @property
     def frequency(self) -> Floats:
@@ -83,8 +76,7 @@ def diagram_of(data: FrequencyResponses, variance: Floats) -> StabilisationDiagr
     shapes = [shapes_of(*poles, H, s[lines], q) for poles in kept]
     distance = [np.full(len(shapes[0]), np.inf)]
     for ((below, _), psi_below), ((now, _), psi) in pairwise(zip(kept, shapes, strict=True)):
-        d = _distances(now, psi, below, psi_below)
-        distance.append(d.min(axis=1, initial=np.inf))
+        distance.append(_distances(now, psi, below, psi_below).min(axis=1, initial=np.inf))
     order, stable = np.repeat(orders, list(map(len, shapes))), np.concatenate(distance) < CUT
     clusters = _clusters(order, pole, np.flatnonzero(stable), np.concatenate(shapes)[stable])
     return StabilisationDiagram(order, pole, participation, stable, tuple(orders), clusters)
@@ -164,8 +156,7 @@ def multivariate_indicators(data: FrequencyResponses) -> Floats:
     H = np.where(data.measured, data.H, 0).transpose(2, 1, 0)
     inphase, quadrature = (H.imag, H.real) if data.quantity == "mobility" else (H.real, H.imag)
     A = inphase.swapaxes(1, 2) @ inphase
-    B = quadrature.swapaxes(1, 2) @ quadrature
-    total = A + B
+    total = A + quadrature.swapaxes(1, 2) @ quadrature
     size = np.trace(total, axis1=1, axis2=2)[:, None, None] / total.shape[1]
     total = total + (LEAST * np.maximum(size, TINY)) * np.eye(total.shape[1])
     root = np.linalg.inv(np.linalg.cholesky(total))

@@ -101,8 +101,7 @@ def _force(fit: Fit) -> Floats:
     per_line = square(S) - squares.sum(axis=1)
     below = (power.sum(axis=1) ** 2 - (power**2).sum(axis=1)).sum(axis=1)
     b = per_line.sum(axis=1)
-    error = np.sqrt((per_line**2).sum(axis=1))
-    good = (b > SIGNIFICANT * error) & (below > 0)
+    good = (b > SIGNIFICANT * np.sqrt((per_line**2).sum(axis=1))) & (below > 0)
     return np.where(good, b / np.where(below > 0, below, 1.0), 0.0)
 
 
@@ -169,10 +168,8 @@ def _covariances(fit: Fit, residuals: Residuals) -> Floats:
         share = variance[:, None] * weight * square(fit.functions)
         weight = weight * np.maximum(1 - share, 0)
     alone = replace(task, weight=weight)
-    if len(residuals.correlation) > 1:
-        M = correlated_gram(alone, E, residuals.correlation)
-    else:
-        M = gram(alone, E)
+    rho = residuals.correlation
+    M = correlated_gram(alone, E, rho) if len(rho) > 1 else gram(alone, E)
     P = np.zeros((*M.shape[:3], 2 * n + X.shape[3]))
     P[:, :, :first, : 2 * n] = T[:, None] @ fit.inverse[:, :, : 2 * n]
     P[..., 2 * n :] = X

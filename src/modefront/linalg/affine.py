@@ -90,8 +90,7 @@ class Monomials:
             factors *= value ** e[:, j]
         for j, i in tied.items():
             e[:, i] += e[:, j]
-        free = [j for j in range(e.shape[1]) if j not in fixed and j not in tied]
-        return replace(self, exponents=e[:, free]), factors
+        return replace(self, exponents=np.delete(e, [*fixed, *tied], axis=1)), factors
 
     def values(self, theta: Floats) -> Floats:
         """Return c(theta), shape (terms,)."""
@@ -121,8 +120,7 @@ class Members:
     group: str  # what they are of; empty for none
     nodes: Ints  # (members, ...) between which each is
     rows: csr_array  # (members k, N) all R, one below the other
-    # terms to which they add, (members,), and matrices A (members, k, k)
-    shares: Sequence[tuple[Ints, Floats]]
+    shares: Sequence[tuple[Ints, Floats]]  # terms they add to, (members,), and A (members, k, k)
 
 
 @dataclass(frozen=True)
@@ -189,8 +187,7 @@ class SparseAffine:
 
     indptr: Ints32  # (N + 1,) where each row starts in ``indices``
     indices: Ints32  # (entries,) columns, ascending within each row
-    # (entries, terms) values of each term; sparse, since most terms are local
-    terms: csc_array
+    terms: csc_array  # (entries, terms) values of each term; sparse, since most terms are local
     coefficients: Monomials  # c(theta)
 
     @property
@@ -334,8 +331,7 @@ class SparseAffine:
         keys = keys[first]
         starts = np.searchsorted(keys, np.arange(terms.shape[1] + 1) * self.size)
         parts = terms.data, self.indices[entry], indptr
-        stack = csr_array(parts, shape=(keys.size, self.size))
-        return stack, keys % self.size, starts
+        return csr_array(parts, shape=(keys.size, self.size)), keys % self.size, starts
 
 
 def sparse_rows(values: Floats, columns: Ints, width: int) -> csr_array:

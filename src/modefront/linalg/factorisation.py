@@ -60,8 +60,7 @@ def analyse(keys: Ints, size: int) -> tuple[rslab.LdltSymbolic, Ints]:
     keys = merged(keys, np.arange(size) * (size + 1))
     starts = np.searchsorted(keys, np.arange(size + 1) * size)
     parts = np.ones(keys.size), (keys % size).astype(np.intp), starts.astype(np.intp)
-    lower = csc_array(parts, shape=(size, size))
-    return rslab.analyze(lower, path="ldlt"), keys
+    return rslab.analyze(csc_array(parts, shape=(size, size)), path="ldlt"), keys
 
 
 def factorise(A: sparray) -> Factorisation:

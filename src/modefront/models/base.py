@@ -16,20 +16,16 @@ if TYPE_CHECKING:
     from modefront.models.geometry import Geometry
     from modefront.models.matrices import MatrixModel
 
-NamedWeights = Mapping[str, float]
-"""Weights by the name of a sensor or output: a force of that size, or a term of a sum."""
+NamedWeights = Mapping[str, float]  # by sensor or output: a force of that size, a term of a sum
 
 
 @dataclass(frozen=True)
 class LoadCase:
     """Loads and outputs of a model: either forces, or one motion of the base."""
 
-    # weighted sums of sensors and outputs, such as a storey drift
-    outputs: tuple[NamedWeights, ...]
-    # distributions of force, one an input; none where the base moves
-    forces: tuple[NamedWeights, ...] = ()
-    # the direction in which the base moves, of the model's directions; None for forces
-    base: str | None = None
+    outputs: tuple[NamedWeights, ...]  # sums of sensors and outputs, such as a storey drift
+    forces: tuple[NamedWeights, ...] = ()  # one an input; none where the base moves
+    base: str | None = None  # direction, of the model's, in which the base moves; None for forces
 
 
 @dataclass(frozen=True)

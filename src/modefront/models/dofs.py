@@ -14,11 +14,13 @@ from modefront.fem.structure import DIRECTIONS
 from modefront.inputs import wrong
 from modefront.outputs import write_table
 from modefront.rounding import ACCUMULATED
+from modefront.work.codec import record
 
 COLUMNS = ("node", "direction", "weight")  # header of a file of degrees of freedom
 NUMBERS = {name: k + 1 for k, name in enumerate(DIRECTIONS)}
 
 
+@record
 @dataclass(frozen=True, eq=False)
 class DofTable:
     """Node and direction of every degree of freedom of a model.
@@ -80,8 +82,7 @@ def motion_of_nodes(dofs: DofTable, nodes: Ints) -> csr_array:
     part = (dofs.direction >= 1) & (dofs.direction <= 6) & np.isin(dofs.node, nodes)
     chosen = np.flatnonzero(part)
     row = 6 * np.searchsorted(nodes, dofs.node[chosen]) + dofs.direction[chosen] - 1
-    entries = (dofs.weight[chosen], (row, chosen))
-    return csr_array(entries, shape=(6 * nodes.size, dofs.size))
+    return csr_array((dofs.weight[chosen], (row, chosen)), shape=(6 * nodes.size, dofs.size))
 
 
 def name_of(direction: int) -> str:

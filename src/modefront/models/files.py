@@ -73,9 +73,7 @@ def entries(path: Path, form: str, name: str, square: str) -> tuple[Any, tuple[i
     """
     matrix = READERS[form](path, name)
     _check_shape(path, matrix.shape, square)
-    if matrix.dtype.kind not in "biufc":
-        raise ValueError(f"'{name}' is no matrix of numbers: {matrix.dtype}")
-    if matrix.dtype.kind == "c":
+    if matrix.dtype.kind not in "biuf":
         raise inputs.wrong(path, "real numbers", str(matrix.dtype))
     if isinstance(matrix, np.ndarray):
         matrix = matrix.astype(float)  # of any order and precision
@@ -124,8 +122,6 @@ def _numpy_npy(path: Path, _: str) -> Any:
                 raise
             raise ValueError("no array of NumPy, or one that is cut off") from None
         inputs.counted(path, "file", "bytes of values", stream.tell(), path.stat().st_size)
-    if array.dtype.kind not in "biufc":
-        raise inputs.wrong(path, "real numbers", str(array.dtype))
     return array
 
 
@@ -149,8 +145,7 @@ def _matlab(path: Path, name: str) -> Any:
         from modefront import hdf5
 
         return hdf5.variable(path, _chosen(path, name, hdf5.variables(path)))
-    known = {each: shape for each, shape, _ in scipy.io.whosmat(path)}
-    chosen = _chosen(path, name, known)
+    chosen = _chosen(path, name, {each: shape for each, shape, _ in scipy.io.whosmat(path)})
     A = scipy.io.loadmat(path, variable_names=[chosen], chars_as_strings=False)[chosen]
     if A.dtype.kind not in "biufc":
         raise ValueError(f"'{chosen}' is no matrix of numbers")

@@ -37,8 +37,7 @@ from modefront.options import each_once
 from modefront.text import Shown, brief_model
 from modefront.work.transfer import shared
 
-Matrix: TypeAlias = Any
-"""A matrix (N, N): an array, nested lists of numbers, or a sparse matrix of scipy."""
+Matrix: TypeAlias = Any  # (N, N): an array, nested lists of numbers, or a sparse matrix of scipy
 
 MatrixFunction: TypeAlias = Callable[
     [NDArray[Any]],
@@ -104,8 +103,7 @@ class CheckedFunction:
         moved[i] += 1j * h
         place = f"{self._place(theta)}, complex {self.names[i]}"
         expected = "a function that takes complex parameters, or that returns K, M, dK and dM"
-        with warnings.catch_warnings():
-            warnings.simplefilter("error", ComplexWarning)
+        with warnings.catch_warnings(action="error", category=ComplexWarning):
             returned = self._call(moved, place, expected)
         dK, dM = (
             _checked(A, f"{place}: {what}", size, real=False).imag / h

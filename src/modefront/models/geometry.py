@@ -63,8 +63,7 @@ def chain_geometry(masses: int, sensors: csr_array) -> Geometry:
     nodes, lower = np.zeros((masses + 1, 3)), np.arange(masses)
     nodes[1:, 2] = lower + 1
     lines = np.column_stack([lower, lower + 1])
-    entries = np.ones(masses), (3 * lower + 3, lower)
-    motion = csr_array(entries, shape=(3 * (masses + 1), masses))
+    motion = csr_array((np.ones(masses), (3 * lower + 3, lower)), shape=(3 * masses + 3, masses))
     weights = sensors.toarray()
     greatest = np.abs(weights).argmax(axis=1)
     directions = np.zeros((len(weights), 3))

@@ -159,14 +159,10 @@ class MatrixModel(Shown):
             motion = self.base[load_case.base][:, None]
             loads, rigid = -(self.mass.at(theta) @ motion), gram(outputs, motion)
         solution = self.full_modes(theta, count, loads)
-        phi = self.selection @ solution.Phi
-        return Transfer(
-            Modes(solution.lam, phi),
-            input=gram(solution.Phi, loads),
-            output=gram(outputs, solution.Phi),
-            static=None if solution.static is None else gram(outputs, solution.static),
-            rigid=rigid,
-        )
+        modes = Modes(solution.lam, self.selection @ solution.Phi)
+        both = gram(solution.Phi, loads), gram(outputs, solution.Phi)
+        static = None if solution.static is None else gram(outputs, solution.static)
+        return Transfer(modes, *both, static, rigid)
 
     def _weights(self, sums: Sequence[NamedWeights]) -> Floats:
         """Return weighted sums of sensors and outputs as columns (N, sums)."""
@@ -189,13 +185,10 @@ class MatrixModel(Shown):
         others = {index[name]: index[other] for name, other in tied.items()}
         pair = {"stiffness": self.stiffness, "mass": self.mass}
         scales = {of: A.coefficients.held(values, others)[1] for of, A in pair.items()}
-        return replace(
-            self,
-            members=self.members and partial(_scaled, self.members, scales),
-            parameters=tuple(x for x in self.parameters if x not in fixed and x not in tied),
-            stiffness=self.stiffness.held(values, others),
-            mass=self.mass.held(values, others),
-        )
+        members = self.members and partial(_scaled, self.members, scales)
+        names = tuple(x for x in self.parameters if x not in fixed and x not in tied)
+        K, M = (A.held(values, others) for A in (self.stiffness, self.mass))
+        return replace(self, members=members, parameters=names, stiffness=K, mass=M)
 
     def sparse(self) -> "MatrixModel":
         """Return the same model with sparse matrices."""

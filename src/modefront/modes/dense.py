@@ -93,8 +93,7 @@ def full_modes(
         try:
             static = scipy.linalg.cho_solve(scipy.linalg.cho_factor(Kt), loads)
         except np.linalg.LinAlgError:
-            text = "the stiffness matrix is singular to working precision"
-            raise ModelError(text) from None
+            raise ModelError("the stiffness matrix is singular to working precision") from None
     return FullModes(lam[:count], known.Phi[:, :count], static)
 
 

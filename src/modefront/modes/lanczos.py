@@ -63,8 +63,14 @@ def greatest(
 
     Q, AQ, R = _orthonormal(start, A, 0.0)
     for step in range(1, steps + 1):
-        if d + Q.shape[1] > capacity:
-            d = _restart(V, AV, H, d, min(capacity - Q.shape[1], needed + 2 * b))
+        if d + Q.shape[1] > capacity:  # the leading Ritz vectors take the place of the basis
+            keep = min(capacity - Q.shape[1], needed + 2 * b)
+            mu, Y = np.linalg.eigh(H[:d, :d])
+            Y = Y[:, ::-1][:, :keep]
+            V[:, :keep], AV[:, :keep] = combine(V[:, :d], Y), combine(AV[:, :d], Y)
+            H[:] = 0.0
+            H[:keep, :keep] = np.diag(mu[::-1][:keep])
+            d = keep
         new = slice(d, d + Q.shape[1])
         V[:, new], AV[:, new] = Q, AQ
         d = new.stop
@@ -117,13 +123,3 @@ def _orthonormal(
     size = np.sqrt(squares[large])
     U = U[:, large]
     return combine(W, U / size), combine(AW, U / size), size[:, None] * U.T
-
-
-def _restart(V: Floats, AV: Floats, H: Floats, d: int, keep: int) -> int:
-    """Replace the basis by its ``keep`` leading Ritz vectors; the next block stays the same."""
-    mu, Y = np.linalg.eigh(H[:d, :d])
-    Y = Y[:, ::-1][:, :keep]
-    V[:, :keep], AV[:, :keep] = combine(V[:, :d], Y), combine(AV[:, :d], Y)
-    H[:] = 0.0
-    H[:keep, :keep] = np.diag(mu[::-1][:keep])
-    return keep

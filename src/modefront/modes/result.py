@@ -108,8 +108,7 @@ class ModeDerivatives(Shown):
     # (modes,) true where a mode is so close to another one that derivatives of the single mode are
     # not defined to eight digits, and only those of the subspace are
     coincident: Bools
-    # the second derivatives, computed when requested; None where they are not known
-    second: SecondDerivatives | None = None
+    second: SecondDerivatives | None = None  # computed when requested; None where not known
 
 
 @dataclass(frozen=True, repr=False)
@@ -117,10 +116,8 @@ class Modes(Shown):
     """The lowest modes of a model, in ascending order, seen at its sensors."""
 
     lam: Floats  # (modes,) eigenvalues omega**2 in (rad/s)**2
-    # (sensors, modes) mass-normalised mode shapes at the sensors; the sign is arbitrary
-    phi: Floats
-    # with respect to the parameters; None where they were not requested
-    derivatives: ModeDerivatives | None = None
+    phi: Floats  # (sensors, modes) mass-normalised shapes at the sensors; the sign is arbitrary
+    derivatives: ModeDerivatives | None = None  # by the parameters; None where not requested
 
     @property
     def dlam(self) -> Floats:

@@ -222,8 +222,7 @@ def _regular(
     if factor.negative != 0:
         return None, np.zeros((0, right.shape[1]))
     X = factor.solve(right)
-    energy = np.einsum("nb,nb->b", X, right)
-    if (energy < singular * (diagonal @ X**2)).any():
+    if (np.einsum("nb,nb->b", X, right) < singular * (diagonal @ X**2)).any():
         return None, X
     return factor, X
 

@@ -1,4 +1,3 @@
 """Finite-element programs, a module each: a new one is named here, and nowhere else."""
 
-PROGRAMS = ("calculix", "abaqus", "nastran", "ansys", "opensees")
-"""Names of all programs, as the command line has them."""
+PROGRAMS = ("calculix", "abaqus", "nastran", "ansys", "opensees")  # as the command line has them

@@ -105,11 +105,8 @@ def _by_rows(
     highest = max(int(index.max()) for part in parts for index in part[:2])
     made = -min(0, *(int(index.min()) for part in parts for index in part[:2]))
     own = base.given_table(options, highest)
-    dofs = DofTable(
-        np.append(own.node, -np.arange(1, 1 + made)),
-        np.append(own.direction, np.zeros(made, np.intp)),
-        np.append(own.weight, np.zeros(made)),
-    )
+    node, none = np.append(own.node, -np.arange(1, 1 + made)), np.zeros(made, np.intp)
+    dofs = DofTable(node, np.append(own.direction, none), np.append(own.weight, none))
     entries = []
     for *places, value in parts:
         row, column = (np.where(x > 0, x - 1, highest - 1 - x) for x in places)

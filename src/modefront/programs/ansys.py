@@ -25,7 +25,7 @@ import numpy as np
 import scipy.sparse
 
 from modefront._typing import Floats, Ints
-from modefront.errors import reason
+from modefront.errors import refusing
 from modefront.inputs import wrong
 from modefront.models.dofs import DofTable
 from modefront.models.files import read_entries
@@ -42,11 +42,9 @@ def read(path: Path, options: JobOptions) -> Listed:
     """Return the matrices of a job: a .full file, or the beginning of the names of two others."""
     full = path if path.suffix.lower() == ".full" else path.with_name(path.name + ".full")
     if full is path or full.is_file():
-        file, expected = existing(full, "a file of Ansys", ADVICE), "whole records of an assembled "
-        try:
+        file = existing(full, "a file of Ansys", ADVICE)
+        with refusing(file, "whole records of an assembled matrix of Ansys (.full)", ValueError):
             return _from_full(_Words(file), file)
-        except ValueError as error:
-            raise wrong(file, f"{expected}matrix of Ansys (.full)", reason(error)) from None
     files, matrices, suffixes = [], [], (".mmf", ".mtx", ".mmx", ".txt")
     for what, endings in MATRICES.items():
         names = [path.with_name(path.name + end + suffix) for end in endings for suffix in suffixes]

@@ -18,7 +18,7 @@ import scipy.sparse
 
 from modefront._typing import Bools, Floats, Ints
 from modefront.data.csv import NUMBER
-from modefront.errors import reason
+from modefront.errors import reason, refusing
 from modefront.fem.structure import FACES
 from modefront.inputs import ended, file_size, first_repeated, wrong
 from modefront.models.dofs import DofTable, read_dofs
@@ -79,8 +79,8 @@ def write_mesh(path: Path, mesh: ProgramMesh) -> None:
 
 def read_mesh(path: Path) -> ProgramMesh:
     """Return a mesh that `write_mesh` has written; raises InputError for any other file."""
-    file_size(path, "nodes and elements (mesh.npz)")
-    try:
+    file_size(path, expected := "nodes and elements (mesh.npz)")
+    with refusing(path, expected):  # what NumPy raises for a damaged file is not documented
         with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
             cells = {name.removeprefix("cells_"): file[name] for name in file.files}
         number, coordinates = cells.pop("number"), cells.pop("coordinates")
@@ -89,9 +89,8 @@ def read_mesh(path: Path) -> ProgramMesh:
             for kind, table in cells.items()
         ):
             raise ValueError("arrays that do not belong together")
-        return ProgramMesh(number.astype(np.intp), coordinates.astype(float), cells)
-    except Exception as error:  # what NumPy raises for a damaged file is not documented
-        raise wrong(path, "nodes and elements (mesh.npz)", reason(error)) from None
+        number, coordinates = number.astype(np.intp), coordinates.astype(float)
+    return ProgramMesh(number, coordinates, cells)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -116,8 +115,7 @@ class Job(Shown):
 class JobOptions:
     """Options of the command line for all jobs."""
 
-    # stiffness, mass: names of the matrices in files that hold several; None for the usual ones
-    stiffness: str | None = None
+    stiffness: str | None = None  # stiffness, mass: names among several; None for the usual ones
     mass: str | None = None
     dofs: Path | None = None  # a table of degrees of freedom, for files that do not tell nodes
     deck: Path | None = None  # the input file; None for one beside the matrices
@@ -127,12 +125,9 @@ def read_job(program: str, path: Path, options: JobOptions) -> Job:
     """Return a job of a program; raises InputError where its files cannot be read."""
     given = (program, *(str(text or "") for text in astuple(options)))
     reader, expected = f"{__name__}:parts_of_job", f"a job of {program}"
-    name, *matrices, table, mesh, precision, notes = isolated(
-        reader, path, expected, arguments=given
-    )
-    dofs = DofTable(*table)
+    name, *matrices, dofs, others = isolated(reader, path, expected, arguments=given)
     K, M = (Matrix(parts, shape=(dofs.size, dofs.size)) for parts in matrices)
-    return Job(name, K, M, dofs, precision, mesh, notes)
+    return Job(name, K, M, dofs, *others)
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,8 +135,7 @@ class Listed:
     """What the files of a job list, before it is checked."""
 
     files: tuple[Path, Path]  # that of the stiffness, and that of the mass
-    # stiffness and mass as they are listed, one triangle or both
-    matrices: Sequence[scipy.sparse.coo_array]
+    matrices: Sequence[scipy.sparse.coo_array]  # stiffness and mass, one triangle or both
     dofs: DofTable  # node and direction of each row; `given_table` where no file tells them
     precision: float = 1e-15  # relative error of the numbers, that of binary doubles unless given
     # which rows are not held, (N,), given both matrices
@@ -195,8 +189,8 @@ def parts_of_job(path: Path, program: str, *given: str) -> tuple[Any, ...]:
     if not (table.node > 0).any():
         notes.append("sensors can be given by degrees of freedom only, unless --dofs names nodes")
     matrices = ((A.data, A.indices, A.indptr) for A in (K, M))
-    dofs = tuple(x[free] for x in (table.node, table.direction, table.weight))
-    return str(listed.files[0]), *matrices, dofs, listed.mesh, listed.precision, tuple(notes)
+    dofs = DofTable(table.node[free], table.direction[free], table.weight[free])
+    return str(listed.files[0]), *matrices, dofs, (listed.precision, listed.mesh, tuple(notes))
 
 
 def whole(path: Path, listed: scipy.sparse.coo_array, dofs: DofTable) -> Matrix:

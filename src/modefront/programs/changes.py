@@ -9,8 +9,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from modefront.errors import reason
-from modefront.inputs import file_size, fortran, wrong
+from modefront.errors import refusing
+from modefront.inputs import file_size, fortran
 from modefront.outputs import write_text
 
 NUMBER = re.compile(r"(?<![\w.])[+-]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d+|[+-]\d+)?(?![\w.])")
@@ -40,10 +40,7 @@ class Change:
 
 
 def times(
-    lines: Mapping[int, str],
-    changes: Iterable[Change],
-    theta: Mapping[str, float],
-    digits: int = 9,
+    lines: Mapping[int, str], changes: Iterable[Change], theta: Mapping[str, float], digits: int = 9
 ) -> dict[int, str]:
     """Return the changed lines, by their numbers, with their numbers times the parameters."""
     factors: dict[int, dict[tuple[int, int, int], float]] = {}
@@ -173,11 +170,9 @@ def write_changes(path: Path, changes: Sequence[Change]) -> None:
 
 def read_changes(path: Path) -> list[Change]:
     """Return the changes in a file; raises InputError for any other file."""
-    file_size(path, "changes of a deck")
-    try:
+    file_size(path, expected := "changes of a deck")
+    with refusing(path, expected, OSError, ValueError, TypeError, KeyError):
         listed = json.loads(path.read_text(encoding="utf-8"))
         for each in listed:
             each["spans"] = tuple((int(a), int(b)) for a, b in each["spans"])
         return [Change(**each) for each in listed]
-    except (OSError, ValueError, TypeError, KeyError) as error:
-        raise wrong(path, "changes of a deck", reason(error)) from None

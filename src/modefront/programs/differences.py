@@ -159,8 +159,7 @@ class Differences:
         guilty = [name for name, share in shares.items() if share >= COVERED] or moved
         if _share(E, terms, quantity, moved) < COVERED:
             entries = scipy.sparse.coo_array(E)
-            k = int(np.argmax(np.abs(entries.data)))
-            place = terms.dofs.label(int(entries.row[k]))
+            place = terms.dofs.label(int(entries.row[np.abs(entries.data).argmax()]))
             expected = f"only {', '.join(moved)} to differ from '{self.nominal.name}'"
             return wrong(label, expected, f"other changes of the {quantity}, at {place}")
         names, first = " and ".join(f"'{name}'" for name in guilty), guilty[0]
@@ -275,8 +274,7 @@ def condensed(terms: Terms) -> tuple[Terms, int, int]:
     rows = {x: {name: A[kept][:, kept].tocsr() for name, A in of.items()} for x, of in both.items()}
     matrices = {x: {name: A for name, A in of.items() if A.nnz} for x, of in rows.items()}
     dofs = DofTable(terms.dofs.node[kept], terms.dofs.direction[kept], terms.dofs.weight[kept])
-    left = replace(terms, matrices=matrices, dofs=dofs)
-    return left, int(gone.sum()), int((~gone).sum())
+    return replace(terms, matrices=matrices, dofs=dofs), int(gone.sum()), int((~gone).sum())
 
 
 def _eliminated(A: Matrix, internal: Ints, groups: Ints) -> tuple[Matrix, Bools]:

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.errors import reason
+from modefront.errors import reason, refusing
 from modefront.inputs import ended, fortran, wrong
 from modefront.programs.base import ProgramMesh, mesh_of, refuse_unknown_nodes
 
@@ -75,11 +75,9 @@ def read_deck(path: Path) -> Deck:
         if deck.parts or keyword in ("PART", "INSTANCE"):
             deck.parts = True
         elif take := _TAKEN.get(keyword):
-            try:
+            expected = f"lines of *{keyword} with all of their numbers"
+            with refusing(path, expected, ValueError, place=f"*{keyword}"):
                 take(deck, options, rows)
-            except ValueError as error:
-                expected = f"lines of *{keyword} with all of their numbers"
-                raise wrong(path, expected, reason(error), f"*{keyword}") from None
         elif keyword in ("RIGID BODY", "COUPLING"):
             deck.bodies.append(options.get("NSET", ""))
             deck.guides += [options.get(name, "") for name in ("REF NODE", "ROT NODE")]

@@ -20,7 +20,7 @@ import scipy.sparse
 from scipy.linalg import null_space
 
 from modefront._typing import Bools, Floats, Ints
-from modefront.errors import reason
+from modefront.errors import refusing
 from modefront.inputs import fortran, wrong
 from modefront.models.dofs import DofTable
 from modefront.programs import base
@@ -86,10 +86,8 @@ def _deck(path: Path, options: base.JobOptions, notes: list[str]) -> "Bulk | Non
     if deck is None:
         notes.append(f"there is no deck ({path.stem}.dat or .bdf), and so there are no coordinates")
         return None
-    try:
+    with refusing(deck, "a deck that can be read", OSError):
         bulk = read_bulk(deck)
-    except OSError as error:
-        raise wrong(deck, "a deck that can be read", reason(error)) from None
     notes += base.turned(sorted(bulk.turned))
     return bulk
 
@@ -258,11 +256,9 @@ def read_bulk(path: Path) -> Bulk:
     content, cards = Bulk(), _cards(bulk, text.count("\n", 0, len(text) - len(bulk)) + 1)
     default = next((card for _, card in cards if card[0] == "GRDSET"), 2 * EMPTY)
     for line, card in cards:
-        try:
+        expected = f"an entry {card[0]} with all of its fields"
+        with refusing(path, expected, ValueError, IndexError, place=f"line {line}"):
             _take(content, card, default)
-        except (ValueError, IndexError) as error:
-            expected = f"an entry {card[0]} with all of its fields"
-            raise wrong(path, expected, reason(error), f"line {line}") from None
     if not any(card[0] == "INCLUDE" for _, card in cards):
         if not content.nodes and not content.scalar:
             raise wrong(path, "entries GRID of nodes", "none")

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from modefront.data.csv import table_rows
-from modefront.errors import reason
-from modefront.inputs import ended, wrong
+from modefront.errors import refusing
+from modefront.inputs import ended
 from modefront.models.dofs import read_dofs
 from modefront.models.files import read_entries
 from modefront.programs import base
@@ -52,7 +52,7 @@ def _rows(path: Path, form: str, number: type) -> dict[int, list[Any]]:
         first, *others = (x.strip() for x in fields if x.strip())
         if k == 0 and not first.lstrip("-").isdigit():
             continue
-        try:
+        with refusing(path, f"rows {form}", ValueError, place=f"line {line}"):
             key, row = int(first), list(map(number, others))
             if key in out:
                 raise ValueError(f"{key} again")
@@ -60,7 +60,5 @@ def _rows(path: Path, form: str, number: type) -> dict[int, list[Any]]:
                 raise ValueError(f"{len(row)} coordinates")
             if not np.isfinite(row).all():
                 raise ValueError("numbers that are not finite")
-        except ValueError as error:
-            raise wrong(path, f"rows {form}", reason(error), f"line {line}") from None
-        out[key] = row
+            out[key] = row
     return out

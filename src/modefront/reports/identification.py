@@ -20,21 +20,21 @@ MOST_LINES, MOST_FUNCTIONS = 600, 40
 
 def write_identification(test: IdentifiedTest, path: Path) -> Path:
     """Write the page of an identification; raises InputError where that cannot be done."""
-    chosen = test.test.chosen
+    given = test.test
     report = {
-        "title": test.test.name,
+        "title": given.name,
         "version": __version__,
         "warnings": test.warnings,
-        "chosen": {"keep": chosen.keep, "drop": chosen.drop, "seed": chosen.seeds},
+        "chosen": {"keep": given.keep, "drop": given.drop, "seed": given.seeds},
         "sets": [{"name": name} | _set(test, k) for k, name in enumerate(test.names)],
     }
     data = packed(json_of(report).encode())
-    write_html(page_of(test.test.name, data, "identification.js"), path)
+    write_html(page_of(given.name, data, "identification.js"), path)
     return path
 
 
 def _set(test: IdentifiedTest, k: int) -> dict[str, Any]:
-    each, seeds = test.identified[k], test.test.chosen.seeds
+    each, seeds = test.identified[k], test.test.seeds
     data, diagram = each.data, each.diagram
     # Lines evenly over the band, and those at modes.
     even = np.linspace(0, len(data.frequency) - 1, min(len(data.frequency), MOST_LINES)).astype(int)

@@ -162,5 +162,4 @@ def truss(axis: Floats, length: Floats, material: Material, area: float) -> tupl
     EA, mass = material.E * area, material.rho * area
     M = mass * L * np.kron(np.array([[2.0, 1], [1, 2]]) / 6, np.eye(3)) + mass * L / 12 * along
     across = np.kron(np.array([[1.0, -1], [-1, 1]]), np.eye(3)) - along
-    unit = symmetric(across / L)
-    return ({0: symmetric(EA / L * along)}, {0: M}), Axial(row, length, EA, unit)
+    return ({0: symmetric(EA / L * along)}, {0: M}), Axial(row, length, EA, symmetric(across / L))

@@ -121,8 +121,7 @@ class Stresses:
     def _centre(self) -> tuple[Floats, Floats]:
         """Return gradients (elements, dim, nodes) at the centre, and volumes (elements,)."""
         xi, w = self.rule
-        centre = (w @ xi / w.sum())[None]
-        g, _ = gradients(self.x, self.cell.shape(centre)[1])
+        g, _ = gradients(self.x, self.cell.shape((w @ xi / w.sum())[None])[1])
         _, det = gradients(self.x, self.cell.shape(xi)[1])
         return g[:, 0], det @ w
 

@@ -83,8 +83,7 @@ TRANSLATION = block_diag(_MEAN[:3, :3], _MEAN[:3, :3], _MEAN)
 ROTARY = block_diag(*[_MEAN[:3, :3]] * 3) / 12
 """Means of products of linear functions and bows in u, and in v over 12."""
 
-Rows = tuple[Floats, Floats]
-"""Rows B (elements, points, rows, n) and weights D (elements, points, rows, rows) of B^T D B."""
+Rows = tuple[Floats, Floats]  # B (elements, points, rows, n), D (.., rows, rows) of B^T D B
 
 
 @dataclass(frozen=True)

@@ -17,24 +17,14 @@ from scipy.special import chdtri, ndtri
 from modefront._typing import Bools, Floats
 from modefront.data.modal_test import Records
 from modefront.data.responses import FrequencyResponses
-from modefront.identification import harmonics, selection, spectra, spectral_density
-from modefront.identification.record import (
-    Identification,
-    ModeEstimate,
-    Rejected,
-    Residuals,
-)
+from modefront.identification import harmonics, selection, spectra, spectral_density, stabilisation
+from modefront.identification.record import Identification, ModeEstimate, Rejected, Residuals
 from modefront.identification.selection import FALSE
 from modefront.identification.sets import LEAST_MAC, merged_shape, mode_groups
 from modefront.identification.shapes import real_shape
 from modefront.identification.spectra import Transforms
 from modefront.identification.spectral_density import Band, Density, Fit
-from modefront.identification.stabilisation import (
-    StabilisationDiagram,
-    diagram_of,
-    shapes_of,
-    support,
-)
+from modefront.identification.stabilisation import StabilisationDiagram
 
 REACH = 4.0, 20.0
 """Half bandwidths on either side of a mode that its band has: the first while its neighbours are
@@ -46,12 +36,8 @@ WIDEST = 0.15
 """Half the width of a band over the frequency of its mode, at most, beyond the first reach: over it
 flanks of modes outside are linear."""
 
-BEYOND = 2 * WIDEST
-"""Share of the highest frequency up to which what moves above it is told from the background."""
-
-OVERLAP = 4.0, 8.0
-"""Distance over the sum of half bandwidths within which modes are fitted at once: first, last."""
-
+BEYOND = 2 * WIDEST  # share of the highest frequency up to which what moves above it is told apart
+OVERLAP = 4.0, 8.0  # distance over the sum of half bandwidths of modes fitted at once: first, last
 LEAST_LINES = 40  # lines of a band, at least
 MOST_TOGETHER = 5  # modes that are fitted at once, at most
 
@@ -61,15 +47,11 @@ apart. With one only, what forces of their own do to the others shifts frequenci
 
 DAMPING = 0.002, 0.05  # limits of damping ratios to start from
 
-TRIAL_STEPS = 8
-"""Steps to the maximum without a mode, which need not be reached to see what the mode gains."""
-
+TRIAL_STEPS = 8  # to the maximum without a mode, which tell what it gains before it is reached
 HARMONIC = 1e-3  # share of the modes that would be taken for harmonics by chance
 CYCLES = 10  # periods of the lowest frequency in a record, at least, by default
 
-HIGHEST = 0.8
-"""Highest frequency over the greatest that records hold, by default: beyond it are filters."""
-
+HIGHEST = 0.8  # highest frequency over the greatest of records, by default: beyond are filters
 LINES_SHOWN = 400  # blocks of lines of the densities that are shown
 
 
@@ -80,11 +62,9 @@ class Local:
     omega: float  # omega, zeta: rad/s, damping ratio
     zeta: float
     phi: Floats  # (sensors,) of unit norm
-    # gain, freedom: 2 Delta J of the fit with the mode, and the parameters that it has more
-    gain: float = np.inf
-    freedom: float = 0.0
-    # of ln omega, ln zeta and phi
-    covariance: Floats = field(default_factory=lambda: np.zeros((0, 0)))
+    gain: float = np.inf  # 2 Delta J of the fit with the mode
+    freedom: float = 0.0  # parameters that this fit has more
+    covariance: Floats = field(default_factory=lambda: np.zeros((0, 0)))  # ln omega, ln zeta, phi
     share: float = np.nan  # its greatest share in the density of a sensor, at its frequency
     kurtosis: tuple[float, float] = (2.0, 1.0)  # kappa, and its standard deviation for a mode
     held: bool = False  # whether it stays whatever its gain
@@ -98,16 +78,11 @@ class Local:
     @property
     def estimate(self) -> ModeEstimate:
         """The mode with its standard deviations, in physical units."""
-        stds = np.sqrt(np.diag(self.covariance))
-        return ModeEstimate(
-            complex(-self.half, self.omega * np.sqrt(1 - self.zeta**2)),
-            float(stds[0]) * self.omega / (2 * np.pi),
-            float(stds[1]) * self.zeta,
-            real_shape(np.nan_to_num(self.phi).astype(complex)),
-            stds[2:],
-            np.zeros(0, complex),
-            shape_covariance=self.covariance[2:, 2:],
-        )
+        stds, C = np.sqrt(np.diag(self.covariance)), self.covariance[2:, 2:]
+        pole = complex(-self.half, self.omega * np.sqrt(1 - self.zeta**2))
+        of_pole = float(stds[0]) * self.omega / (2 * np.pi), float(stds[1]) * self.zeta
+        shape = real_shape(np.nan_to_num(self.phi).astype(complex))
+        return ModeEstimate(pole, *of_pole, shape, stds[2:], np.zeros(0, complex), C)
 
 
 @dataclass(frozen=True)
@@ -187,11 +162,12 @@ def _above(records: Records, high: float) -> tuple[Local, ...]:
 def _starts(records: Records, low: float, high: float) -> tuple[StabilisationDiagram, list[Local]]:
     """Return the diagram of half spectra and its clusters within the band as modes."""
     data, variance = spectra.half_spectra(records, low, high)
-    diagram = diagram_of(data, variance)
+    diagram = stabilisation.diagram_of(data, variance)
     f = diagram.frequency[diagram.clusters]
     inside = diagram.clusters[(f >= low) & (f <= high)]
     lam, s = diagram.pole[inside], np.asarray(2j * np.pi * data.frequency + data.decay)
-    psi = shapes_of(lam, diagram.participation[inside], data.H, s, 0) * records.values.std(axis=1)
+    psi = stabilisation.shapes_of(lam, diagram.participation[inside], data.H, s, 0)
+    psi = psi * records.values.std(axis=1)
     zeta = np.clip(-lam.real / np.abs(lam), *DAMPING)
     rows = zip(np.abs(lam).tolist(), zeta.tolist(), psi, strict=True)
     return diagram, [Local(omega, z, real_shape(shape).shape) for omega, z, shape in rows]
@@ -257,8 +233,7 @@ def _together(
     again: list[Local] = []
     for group in _overlapping(found, OVERLAP[last]):
         apart = [mode for k, mode in enumerate(found) if k not in group]
-        these = [found[k] for k in group]
-        setup, kept = _together(setup, these, [*others, *apart], chance, last)
+        setup, kept = _together(setup, [found[k] for k in group], [*others, *apart], chance, last)
         again += kept
     return setup, again
 
@@ -333,22 +308,14 @@ def _of_group(
         return lines, []
     model, visible = fit.model, _shares(band, fit.model)
     least = chdtri(len(model.phi) + 2, chance)
-    explained = not last or spectral_density.excess(band, model) < least
-    return lines, [
-        Local(
-            float(model.omega[r]),
-            float(model.zeta[r]),
-            model.phi[:, r],
-            float(gain[r]),
-            float(freedom[r]),
-            fit.covariance(r),
-            float(visible[r]),
-            harmonics.kurtosis(lines, model, r, REACH[0]),
-            bool(held[r]),
-            bool(explained),
-        )
-        for r in range(model.free)
-    ]
+    explained = bool(not last or spectral_density.excess(band, model) < least)
+    found = list[Local]()
+    for r in range(model.free):
+        pole = float(model.omega[r]), float(model.zeta[r]), model.phi[:, r]
+        known = *pole, float(gain[r]), float(freedom[r]), fit.covariance(r), float(visible[r])
+        kappa = harmonics.kurtosis(lines, model, r, REACH[0])
+        found.append(Local(*known, kappa, bool(held[r]), explained))
+    return lines, found
 
 
 def _without_sines(
@@ -369,17 +336,10 @@ def _without_sines(
 
 def _first(band: Band, modes: Sequence[Local], free: int) -> Density:
     """Return a model to start from, with the forces that the shapes make of the power."""
-    phi = np.array([mode.phi for mode in modes]).T
-    model = Density(
-        np.array([mode.omega for mode in modes]),
-        np.array([mode.zeta for mode in modes]),
-        phi,
-        np.eye(len(modes), dtype=complex),
-        band.total / band.weight,
-        free,
-        np.zeros((len(phi), 0)),
-        float(band.omega[[0, -1]].mean()),
-    )
+    omega, zeta = np.array([[mode.omega, mode.zeta] for mode in modes]).T
+    phi, root = np.array([mode.phi for mode in modes]).T, np.eye(len(modes), dtype=complex)
+    background, middle = band.total / band.weight, float(band.omega[[0, -1]].mean())
+    model = Density(omega, zeta, phi, root, background, free, np.zeros((len(phi), 0)), middle)
     h2 = np.abs(model.response(band.omega, band.order)) ** 2
     inverse = np.linalg.pinv(phi, rcond=0.1)
     filtered = np.einsum("ri,kij,rj->rk", inverse, band.power, inverse, optimize=True).real
@@ -457,17 +417,12 @@ def _combined(
             modes.append(mode)
         else:
             rejected.append(Rejected(mode.frequency, mode.damping, text))
+    accepted = tuple(sorted(modes, key=lambda mode: mode.frequency))
+    others = tuple(sorted(rejected, key=lambda pole: pole.frequency))
     first, data = max(setups, key=lambda x: len(x.records.sensors)), _densities(setups, sensors)
-    return Identification(
-        sensors,
-        band,
-        tuple(sorted(modes, key=lambda mode: mode.frequency)),
-        tuple(sorted(rejected, key=lambda pole: pole.frequency)),
-        first.diagram,
-        data,
-        np.full(data.H.shape, np.nan, complex),
-        Residuals(1.0, np.ones(1, complex), np.zeros(1), np.full(data.H.shape[:2], np.nan)),
-    )
+    unknown = np.full(data.H.shape, np.nan, complex)
+    left = Residuals(1.0, np.ones(1, complex), np.zeros(1), np.full(data.H.shape[:2], np.nan))
+    return Identification(sensors, band, accepted, others, first.diagram, data, unknown, left)
 
 
 def _of_structure(
@@ -502,9 +457,8 @@ def _judged(
     having: Sequence[tuple[_Setup, Local]], mode: ModeEstimate, setups: int, gain: float
 ) -> ModeEstimate:
     """Return a mode with what speaks for it."""
-    share = max(
-        float(support(setup.diagram, np.array([mode.pole]), np.ones(1))[0]) for setup, _ in having
-    )
+    pole, one = np.array([mode.pole]), np.ones(1)
+    share = max(float(stabilisation.support(x.diagram, pole, one)[0]) for x, _ in having)
     flags = []
     if gain < 1:
         flags.append("kept by hand: noise alone may explain as much")

@@ -21,15 +21,11 @@ from modefront.identification.statistics import mode_estimates, residuals
 from modefront.linalg.small import mac
 from modefront.rounding import TINY
 
-LEAST_LINES = 20
-"""Lines of a band, at least: two modes with their residual terms have twelve numbers a function."""
-
+LEAST_LINES = 20  # of a band: two modes with residual terms have twelve numbers a function
 PRINCIPAL = 48  # principal responses from which the modes are chosen where there are more responses
 FEW = 0.5  # share of the orders below which a mode is flagged, and phase collinearity
 VISIBLE = 1 / 3  # share in the sum of all modes at its frequency below which a mode is flagged
-
-NEIGHBOURS = 0.05
-"""Relative distance of frequencies within which modes of the same shape may be one."""
+NEIGHBOURS = 0.05  # relative distance of frequencies within which modes of one shape may be one
 
 
 def identify(
@@ -168,19 +164,11 @@ def _result(
             rejected.append(Rejected(mode.frequency, mode.damping, why))
     shares = stabilisation.support(diagram, fit.lam * omega, gain)
     judged = _judged(fit, f, gain / selection.needed(task), shares, estimates, kept)
-    return Identification(
-        data.responses,
-        (float(f[0]), float(f[-1])),
-        tuple(sorted((judged[k] for k in kept), key=lambda mode: mode.frequency)),
-        tuple(sorted(rejected, key=lambda pole: pole.frequency)),
-        diagram,
-        data,
-        fit.functions * size,
-        misfit,
-        len(RESIDUALS) // 2,
-        fit.evaluations,
-        fit.converged,
-    )
+    modes = tuple(sorted((judged[k] for k in kept), key=lambda mode: mode.frequency))
+    others = tuple(sorted(rejected, key=lambda pole: pole.frequency))
+    band, synthesised = (float(f[0]), float(f[-1])), fit.functions * size
+    known = data.responses, band, modes, others, diagram, data, synthesised, misfit
+    return Identification(*known, len(RESIDUALS) // 2, fit.evaluations, fit.converged)
 
 
 # 6 arguments: what speaks for a mode, and its neighbours.
@@ -193,7 +181,14 @@ def _judged(
     kept: Sequence[int],
 ) -> list[ModeEstimate]:
     """Return all modes with what speaks for each; only those that are ``kept`` are neighbours."""
-    visible, alike = _visibility(fit), mac(fit.phi.T, fit.phi.T)
+    task, alike = fit.task, mac(fit.phi.T, fit.phi.T)
+    # The greatest share of every mode, over all functions, at its own frequency.
+    resonances = replace(task, s=1j * np.abs(fit.lam) + task.s[0].real)
+    E = primitives(resonances, fit.lam, squares=False)[: 2 * len(fit.lam)]
+    a = (fit.L.T[:, None, :] * fit.phi.T)[task.weight.any(axis=2)]  # (functions, modes)
+    parts = np.abs(a.real[..., None] * E[::2] + a.imag[..., None] * E[1::2])
+    of_sum = parts / np.maximum(parts.sum(axis=1, keepdims=True), TINY)
+    visible = np.einsum("irr->ir", of_sum).max(axis=0, initial=0.0)
     spacing = float(np.median(np.diff(frequency)))
     out = []
     for r, mode in enumerate(estimates):
@@ -221,23 +216,11 @@ def _judged(
                     f"shape of {other.frequency:.5g} Hz (MAC {alike[r, k]:.2f}): one peak split in "
                     "two, or sensors that cannot tell them apart"
                 )
-            elif len(fit.task.H) == 1 and apart < max(half, other.damping * other.frequency):
+            elif len(task.H) == 1 and apart < max(half, other.damping * other.frequency):
                 flags.append(
                     f"within the half bandwidth of {other.frequency:.5g} Hz: one peak split in "
                     "two, or two modes that one reference cannot tell apart"
                 )
         g, share, seen = float(gain[r]), float(shares[r]), float(visible[r])
-        flagged = replace(mode, gain=g, support=share, visibility=seen, flags=tuple(flags))
-        out.append(flagged)
+        out.append(replace(mode, gain=g, support=share, visibility=seen, flags=tuple(flags)))
     return out
-
-
-def _visibility(fit: Fit) -> Floats:
-    """Return the greatest share of every mode, over all functions, at its own frequency."""
-    task = fit.task
-    resonances = replace(task, s=1j * np.abs(fit.lam) + task.s[0].real)
-    E = primitives(resonances, fit.lam, squares=False)[: 2 * len(fit.lam)]
-    a = (fit.L.T[:, None, :] * fit.phi.T)[task.weight.any(axis=2)]  # (functions, modes)
-    parts = np.abs(a.real[..., None] * E[::2] + a.imag[..., None] * E[1::2])
-    shares = parts / np.maximum(parts.sum(axis=1, keepdims=True), TINY)
-    return np.einsum("irr->ir", shares).max(axis=0, initial=0.0)

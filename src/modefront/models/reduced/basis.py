@@ -126,10 +126,7 @@ def extended(basis: Basis, vectors: Floats) -> Basis:
 
 def residuals(pencil: Pencil, thetas: Floats, lam: Floats, X: Floats) -> Floats:
     """Return (K(theta_k) - lam_k M(theta_k)) x_k for thetas (m, p), lam (m,) and X (N, m)."""
-    out = pencil.M.each(thetas, X)
-    out *= -lam
-    out += pencil.K.each(thetas, X)
-    return out
+    return pencil.K.each(thetas, X) - pencil.M.each(thetas, X) * lam
 
 
 STEPS = 30  # steps, after which a full solution is better
@@ -358,8 +355,7 @@ def level(basis: Basis, theta: Floats, lam: Floats, count: int) -> Factorisation
     k = count + int(np.argmax(wide) if wide.any() else np.argmax(gaps))
     # A low level is the sharper one for the modes below it, and Ritz values above are less exact.
     sigma = float(lam[k - 1] + 0.25 * (lam[k] - lam[k - 1]))
-    try:
+    with suppress(SingularMatrixError):
         factor = pencil.factor(pencil.K.at(theta).data, pencil.M.at(theta).data, sigma)
-    except SingularMatrixError:
-        return None
-    return factor if factor.negative == k else None
+        return factor if factor.negative == k else None
+    return None

@@ -41,8 +41,7 @@ class SnapshotRequest:
     """
 
     theta: Floats  # (p,) parameters of the model, or (models, p)
-    # number of modes; 0 where the stiffness matrix is indefinite, and the basis is to know that
-    modes: int
+    modes: int  # their number; 0 where the stiffness is indefinite, and the basis is to know that
     # relative error of eigenvalues below which a model is left as it is, and so is one that is not
     # among the worst; 0 where all models have to be exact, and no mode may be missing
     enough: float = 0.0
@@ -271,7 +270,13 @@ class ReducedModel(Shown):
             if known and not worst:
                 return basis, float(lengths.max())
             models = (worst or models)[:WORST]
-        near = [theta for theta in models if self._is_near(basis, theta, what)]
+        near = [  # models for which the factor at hand is of use, and no mode is missing
+            theta
+            for theta in models
+            if (lam := basis.ritz_values(theta, n + bases.LATER)).size > n
+            and _condition(basis, theta) <= FAR
+            and (what.enough > 0 or bases.level(basis, theta, lam, n) is not None)
+        ]
         if near and (corrected := self._corrected(basis, near, what)):
             basis, error = corrected[0], max(error, corrected[1])
             models = [theta for theta in models if not any(theta is other for other in near)]
@@ -289,15 +294,6 @@ class ReducedModel(Shown):
         if models and failed == len(what.models):
             raise ModelError("none of the models of a snapshot has modes")
         return basis, error
-
-    def _is_near(self, basis: bases.Basis, theta: Floats, what: SnapshotRequest) -> bool:
-        """Return whether the factor at hand is of use for a model, and no mode is missing."""
-        lam = basis.ritz_values(theta, what.modes + bases.LATER)
-        return (
-            lam.size > what.modes
-            and _condition(basis, theta) <= FAR
-            and (what.enough > 0 or bases.level(basis, theta, lam, what.modes) is not None)
-        )
 
     def _corrected(
         self, basis: bases.Basis, near: list[Floats], what: SnapshotRequest
