@@ -173,6 +173,18 @@ def test_a_line_of_calculix_that_is_no_row_is_shown(tmp_path: Path) -> None:
         refused("calculix", tmp_path / "a", rf"line 5: expected 3 numbers.*, found '{wrong}'$")
 
 
+def test_supports_of_calculix_along_turned_axes_hold_none_of_the_model(tmp_path: Path) -> None:
+    write_calculix(tmp_path / "a", K, M, labels())
+    nodes = "".join(f"{node}, {node}., 0., 0.\n" for node in {node for node, _ in labels()})
+    support = "*NSET, NSET=RING\n3\n*BOUNDARY\nRING, 1, 1\n"
+    (tmp_path / "a.inp").write_text(f"*NODE\n{nodes}{support}")
+    with pytest.raises(LookupError, match=r"node 3 can move .y, z."):
+        read("calculix", tmp_path / "a").dofs.sensor(3, "x")
+    turned = "*TRANSFORM, NSET=RING, TYPE=C\n0., 0., 0., 0., 0., 1.\n"
+    (tmp_path / "a.inp").write_text(f"*NODE\n{nodes}{support}{turned}")
+    read("calculix", tmp_path / "a").dofs.sensor(3, "x")
+
+
 def test_nodes_that_calculix_expands_are_means(tmp_path: Path) -> None:
     names = [(9, 3), (5, 1), (5, 3), (5, 1), (5, 3), (9, 3), (9, 3), (11, 1), (11, 3), (11, 3)]
     A = np.diag(np.arange(1.0, 11.0))

@@ -52,9 +52,10 @@ class Deck:
 
     @cached_property
     def held(self) -> set[tuple[int, int]]:
-        """Node and direction, from 1, of every support."""
+        """Node and direction, from 1, of every support along axes that are not turned."""
+        turned = set(self.nodes_of(self.turned))
         ranges = ((self.nodes_of([name]), range(a, b + 1)) for name, a, b in self.supports)
-        return {pair for each in ranges for pair in product(*each)}
+        return {pair for each in ranges for pair in product(*each) if pair[0] not in turned}
 
     def nodes_of(self, names: Iterable[str]) -> Iterator[int]:
         """Yield nodes that are named, and those of sets, as far as they are listed."""
