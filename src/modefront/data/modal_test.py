@@ -259,7 +259,6 @@ def _from_toml(path: Path) -> ModalTest:
         windows = table.record(Windows)
     table = root.table("identify", default=None)
     given = (table.read(IDENTIFY) if table else None) or {}
-    chosen = (given.get(key, ()) for key in ("keep", "drop", "seed"))
     placed: dict[str, Sequence[float]] = root.value("geometry", PLACES, {})
     places = {
         name: (np.array(six[:3]), np.array(six[3:]) / np.linalg.norm(six[3:]))
@@ -290,7 +289,8 @@ def _from_toml(path: Path) -> ModalTest:
             root.fault(f"[geometry] {place}", "a sensor of the files", suggestion(place, sensors))
     refuse(root.faults)
     band, modes = given.get("band"), given.get("modes")
-    return ModalTest(name, band, modes, data_sets, tuple(setups), places, *chosen)
+    keep, drop, seeds = (tuple(given.get(key, ())) for key in ("keep", "drop", "seed"))
+    return ModalTest(name, band, modes, data_sets, tuple(setups), places, keep, drop, seeds)
 
 
 def _set_tables(root: opt.Table, ambient: bool, common: SetFiles) -> list[SetFiles]:

@@ -159,10 +159,13 @@ class MatrixModel(Shown):
             motion = self.base[load_case.base][:, None]
             loads, rigid = -(self.mass.at(theta) @ motion), gram(outputs, motion)
         solution = self.full_modes(theta, count, loads)
-        modes = Modes(solution.lam, self.selection @ solution.Phi)
-        both = gram(solution.Phi, loads), gram(outputs, solution.Phi)
-        static = None if solution.static is None else gram(outputs, solution.static)
-        return Transfer(modes, *both, static, rigid)
+        return Transfer(
+            Modes(solution.lam, self.selection @ solution.Phi),
+            input=gram(solution.Phi, loads),
+            output=gram(outputs, solution.Phi),
+            static=None if solution.static is None else gram(outputs, solution.static),
+            rigid=rigid,
+        )
 
     def _weights(self, sums: Sequence[NamedWeights]) -> Floats:
         """Return weighted sums of sensors and outputs as columns (N, sums)."""

@@ -74,11 +74,17 @@ def mesh_model(
     translations = 6 * np.arange(len(X))[:, None] + np.arange(3)
     motion = csr_array(built.dofs.T[translations.ravel()])
     (at, along), count = built.places, len(structure.sensors)
-    named = tuple(parameters), built.sensors[:count], built.selection[:count]
-    others = dict(zip(built.sensors[count:], built.selection[count:].toarray(), strict=True))
-    # Slaves of rigid links follow their masters, which is the same translation.
-    base = {name: r for name, r in zip(fem.DIRECTIONS, moving, strict=False) if r.any()}
-    model = MatrixModel(*named, K, M, others, base, limits=tuple(limits_of(structure, X)))
-    geometry = Geometry(X, known, motion, at[:count], along[:count, :3])
-    members = partial(fem.members_of, structure, built.dofs.T, *exponents)
-    return replace(model, geometry=geometry, members=members).compact()
+    rows = built.selection[count:].toarray()
+    return MatrixModel(
+        tuple(parameters),
+        built.sensors[:count],
+        built.selection[:count],
+        K,
+        M,
+        outputs=dict(zip(built.sensors[count:], rows, strict=True)),
+        # Slaves of rigid links follow their masters, which is the same translation.
+        base={name: r for name, r in zip(fem.DIRECTIONS, moving, strict=False) if r.any()},
+        limits=tuple(limits_of(structure, X)),
+        geometry=Geometry(X, known, motion, at[:count], along[:count, :3]),
+        members=partial(fem.members_of, structure, built.dofs.T, *exponents),
+    ).compact()

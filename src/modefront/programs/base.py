@@ -125,9 +125,10 @@ def read_job(program: str, path: Path, options: JobOptions) -> Job:
     """Return a job of a program; raises InputError where its files cannot be read."""
     given = (program, *(str(text or "") for text in astuple(options)))
     reader, expected = f"{__name__}:parts_of_job", f"a job of {program}"
-    name, *matrices, dofs, others = isolated(reader, path, expected, arguments=given)
+    parts = isolated(reader, path, expected, arguments=given)
+    name, *matrices, dofs, precision, mesh, notes = parts
     K, M = (Matrix(parts, shape=(dofs.size, dofs.size)) for parts in matrices)
-    return Job(name, K, M, dofs, *others)
+    return Job(name, K, M, dofs, precision, mesh, notes)
 
 
 @dataclass(frozen=True, eq=False)
@@ -190,7 +191,7 @@ def parts_of_job(path: Path, program: str, *given: str) -> tuple[Any, ...]:
         notes.append("sensors can be given by degrees of freedom only, unless --dofs names nodes")
     matrices = ((A.data, A.indices, A.indptr) for A in (K, M))
     dofs = DofTable(table.node[free], table.direction[free], table.weight[free])
-    return str(listed.files[0]), *matrices, dofs, (listed.precision, listed.mesh, tuple(notes))
+    return str(listed.files[0]), *matrices, dofs, listed.precision, listed.mesh, tuple(notes)
 
 
 def whole(path: Path, listed: scipy.sparse.coo_array, dofs: DofTable) -> Matrix:

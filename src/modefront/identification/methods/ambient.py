@@ -78,11 +78,16 @@ class Local:
     @property
     def estimate(self) -> ModeEstimate:
         """The mode with its standard deviations, in physical units."""
-        stds, C = np.sqrt(np.diag(self.covariance)), self.covariance[2:, 2:]
-        pole = complex(-self.half, self.omega * np.sqrt(1 - self.zeta**2))
-        of_pole = float(stds[0]) * self.omega / (2 * np.pi), float(stds[1]) * self.zeta
-        shape = real_shape(np.nan_to_num(self.phi).astype(complex))
-        return ModeEstimate(pole, *of_pole, shape, stds[2:], np.zeros(0, complex), C)
+        stds = np.sqrt(np.diag(self.covariance))
+        return ModeEstimate(
+            complex(-self.half, self.omega * np.sqrt(1 - self.zeta**2)),
+            float(stds[0]) * self.omega / (2 * np.pi),
+            float(stds[1]) * self.zeta,
+            real_shape(np.nan_to_num(self.phi).astype(complex)),
+            stds[2:],
+            np.zeros(0, complex),
+            shape_covariance=self.covariance[2:, 2:],
+        )
 
 
 @dataclass(frozen=True)
@@ -309,13 +314,21 @@ def _of_group(
     model, visible = fit.model, _shares(band, fit.model)
     least = chdtri(len(model.phi) + 2, chance)
     explained = bool(not last or spectral_density.excess(band, model) < least)
-    found = list[Local]()
-    for r in range(model.free):
-        pole = float(model.omega[r]), float(model.zeta[r]), model.phi[:, r]
-        known = *pole, float(gain[r]), float(freedom[r]), fit.covariance(r), float(visible[r])
-        kappa = harmonics.kurtosis(lines, model, r, REACH[0])
-        found.append(Local(*known, kappa, bool(held[r]), explained))
-    return lines, found
+    return lines, [
+        Local(
+            float(model.omega[r]),
+            float(model.zeta[r]),
+            model.phi[:, r],
+            float(gain[r]),
+            float(freedom[r]),
+            fit.covariance(r),
+            float(visible[r]),
+            harmonics.kurtosis(lines, model, r, REACH[0]),
+            bool(held[r]),
+            explained,
+        )
+        for r in range(model.free)
+    ]
 
 
 def _without_sines(

@@ -164,11 +164,19 @@ def _result(
             rejected.append(Rejected(mode.frequency, mode.damping, why))
     shares = stabilisation.support(diagram, fit.lam * omega, gain)
     judged = _judged(fit, f, gain / selection.needed(task), shares, estimates, kept)
-    modes = tuple(sorted((judged[k] for k in kept), key=lambda mode: mode.frequency))
-    others = tuple(sorted(rejected, key=lambda pole: pole.frequency))
-    band, synthesised = (float(f[0]), float(f[-1])), fit.functions * size
-    known = data.responses, band, modes, others, diagram, data, synthesised, misfit
-    return Identification(*known, len(RESIDUALS) // 2, fit.evaluations, fit.converged)
+    return Identification(
+        data.responses,
+        (float(f[0]), float(f[-1])),
+        tuple(sorted((judged[k] for k in kept), key=lambda mode: mode.frequency)),
+        tuple(sorted(rejected, key=lambda pole: pole.frequency)),
+        diagram,
+        data,
+        fit.functions * size,
+        misfit,
+        len(RESIDUALS) // 2,
+        fit.evaluations,
+        fit.converged,
+    )
 
 
 # 6 arguments: what speaks for a mode, and its neighbours.

@@ -126,7 +126,10 @@ def extended(basis: Basis, vectors: Floats) -> Basis:
 
 def residuals(pencil: Pencil, thetas: Floats, lam: Floats, X: Floats) -> Floats:
     """Return (K(theta_k) - lam_k M(theta_k)) x_k for thetas (m, p), lam (m,) and X (N, m)."""
-    return pencil.K.each(thetas, X) - pencil.M.each(thetas, X) * lam
+    out = pencil.M.each(thetas, X)
+    out *= -lam
+    out += pencil.K.each(thetas, X)
+    return out
 
 
 STEPS = 30  # steps, after which a full solution is better

@@ -89,11 +89,16 @@ class Reduction(Checked):
         pays = share(model, count) <= 1 and columns(model, count) <= model.size / 2
         if self.reduction == "auto" and not pays:
             return model
-        values = np.array([(each.nominal, *each.bounds) for each in parameters])
-        nominal, lower, upper = values.T.copy()
-        tolerance = TOLERANCE if isinstance(self.reduction, str) else self.reduction
-        limits = tolerance, self.memory, count - len(data.modes)
-        return ReducedModel(model.sparse(), count, nominal, lower, upper, *limits)
+        return ReducedModel(
+            model.sparse(),
+            count,
+            np.array([each.nominal for each in parameters]),
+            np.array([each.lower for each in parameters]),
+            np.array([each.upper for each in parameters]),
+            tolerance=TOLERANCE if isinstance(self.reduction, str) else self.reduction,
+            memory=self.memory,
+            spare=count - len(data.modes),
+        )
 
     def fallback(self, model: Model) -> str:
         """Return why a model is solved in full though a tolerance was asked for, or nothing."""
