@@ -130,11 +130,10 @@ def work(message: Message, objects: dict[str, bytes]) -> Reply:
         while len(_OBJECTS) > max(KNOWN, len(message.names)):
             _OBJECTS.popitem(last=False)
         tasks: list[Task[Any]] = _Unpickler(io.BytesIO(message.content)).load()
-    return list(map(_done, tasks))
-
-
-def _done(task: Task[Any]) -> Done:
-    try:
-        return computed(task)
-    except Exception as error:  # it belongs to the caller
-        return Done(None, Costs(), 0.0, error)
+    out: list[Done] = []
+    for task in tasks:
+        try:
+            out.append(computed(task))
+        except Exception as error:  # it belongs to the caller
+            out.append(Done(None, Costs(), 0.0, error))
+    return out
