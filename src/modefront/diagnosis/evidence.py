@@ -160,9 +160,9 @@ class Fits:
         self._solved = solved
         self.nominal = self.of(self.plain, 0 * start)
 
-    def of(self, state: State, x: Floats, *, derivatives: bool = True) -> Modes | None:
+    def of(self, state: State, x: Floats) -> Modes | None:
         """Return the modes of a state, at all coordinates, at parameters x; None where none."""
-        return self._solved(int(state.part), self.theta(state, x).tobytes(), derivatives)
+        return self._solved(int(state.part), self.theta(state, x).tobytes(), True)
 
     def units(self, count: int) -> Floats:
         """Return units of what is added to parameters; 0 where factors change them, as of parts."""
