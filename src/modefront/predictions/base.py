@@ -205,11 +205,8 @@ class PredictionKind(Shown):
         by, start = "by the posterior, to first order", f"posterior_{self.dimension}_log"
         for x in self.ranged:
             name, P, unit = f"posterior_{x.name}", x.symbol, "" if x.symbol else x.unit
-            first, of, squared = (
-                start if P else name,
-                f"ln {P}" if P else x.name,
-                unit and unit + "2",
-            )
+            first, of = (start, f"ln {P}") if P else (name, x.name)
+            squared = unit and f"{unit}2"
             yield Variable(f"{first}_std", own, f"standard deviation of {of} {by}", unit=unit)
             yield Variable(f"{first}_covariance", both, f"covariance of {of} {by}", unit=squared)
             if P:
