@@ -12,12 +12,7 @@ from typing import Any, Unpack
 from threadpoolctl import threadpool_limits
 
 from modefront._version import __version__
-from modefront.analysis.certified import (
-    certificate_attributes,
-    certified_best,
-    certified_front,
-    certify,
-)
+from modefront.analysis import certified
 from modefront.analysis.front import analyse_front
 from modefront.datasets import Dataset
 from modefront.errors import writing
@@ -193,14 +188,14 @@ def worked(study: Study, work: Run) -> Dataset:
     # What follows from the points of a refined front, snapshots included, is another repetition.
     refined = study.pareto.refined
     again: Executor = work if refined is None else Within(work, ("refined", repr(refined)))
-    front = certified_front(problem, search, again if is_reduced(problem.model) else work)
+    front = certified.certified_front(problem, search, again if is_reduced(problem.model) else work)
     noise = study.noise.of(problem, study.uncertainty.of(problem.data))
     inference = None
     if noise is not None:
         minima = [x for edge in front.edges for x in edge.minima]
         known = [x.theta for x in (*(point.solution for point in front.points), *minima)]
         find = partial(most_probable, problem, noise)
-        maxima = certified_best(problem, find, known, again)
+        maxima = certified.certified_best(problem, find, known, again)
         front = replace(front, points=[*front.points, Point(Kind.MOST_PROBABLE, maxima[0])])
         draws = max(DRAWS, study.uncertainty.draws)
         along = [x.solution.theta for x in of_kind(front.points, Kind.FRONT)]
@@ -211,7 +206,7 @@ def worked(study: Study, work: Run) -> Dataset:
     at = {("nominal",): problem.evaluate, ("nominal", "weighed"): of.evaluate}
     nominal, beside = work.run([Task(key, each, (problem.start,)) for key, each in at.items()])
     more = [*analysis.identifiable.points, Point(Kind.NOMINAL, given(nominal))]
-    certify(problem, [point.solution for point in more], again)
+    certified.certify(problem, [point.solution for point in more], again)
     data = dataset(problem, replace(front, points=[*front.points, *more]), analysis)
     theta, paired = data["theta"].values, data["paired_mode"].values
     (shapes,) = again.run([Task(("shapes",), mode_shapes, (problem, theta, paired))])
@@ -252,7 +247,7 @@ def _attributes(study: Study, work: Run, front: Front) -> dict[str, str | int | 
         **({} if refined is None else {"refined": refined}),
         **coverage(front),
     }
-    return out | certificate_attributes(study.problem)
+    return out | certified.certificate_attributes(study.problem)
 
 
 def _set_aside(path: Path) -> None:
