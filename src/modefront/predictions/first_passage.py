@@ -6,9 +6,10 @@ from dataclasses import dataclass, replace
 from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
+from numpy.random import SeedSequence
 
 from modefront import options
-from modefront._typing import Floats
+from modefront._typing import Arrays, Floats
 from modefront.data.modal import ModalData
 from modefront.errors import Fault, refuse, wrong
 from modefront.models.base import Model
@@ -232,9 +233,7 @@ class Passage(modal.ModalPrediction):
             (lambda t: np.interp(t, times, factors)) if self.modulation else None,
         )
 
-    def evaluate(
-        self, problem: UpdatingProblem, theta: Floats, seed: np.random.SeedSequence
-    ) -> Mapping[str, Floats]:
+    def evaluate(self, problem: UpdatingProblem, theta: Floats, seed: SeedSequence) -> Arrays:
         """Return the probability at each level and its coefficient of variation, (levels,).
 
         Raises ModelError where the model cannot be evaluated at ``theta``, InputError where the
@@ -244,9 +243,7 @@ class Passage(modal.ModalPrediction):
         P, variation = reliability.estimate(reliability.METHODS[self.method], *asked)
         return {"probability": P, "variation": variation}
 
-    def check(
-        self, problem: UpdatingProblem, theta: Floats, seed: np.random.SeedSequence
-    ) -> Mapping[str, Floats]:
+    def check(self, problem: UpdatingProblem, theta: Floats, seed: SeedSequence) -> Arrays:
         """Return P with half the time step over P, and its standard error, (levels,)."""
         asked = self.problem(problem, theta), np.array(self.levels), self.samples, seed
         ratio, error = reliability.step_effect(reliability.METHODS[self.method], *asked)
