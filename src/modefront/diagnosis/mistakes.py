@@ -189,15 +189,10 @@ def wrong_frequency(old: Explanation) -> Iterator[Mistake]:
         if np.abs(log - np.log(SLIPS)).min() >= REACH:
             slips.append((unknown, float(np.exp(log)), ""))
         numbers: dict[str, Any] = {"model": q + 1, "f": float(old.fits.comparison.frequency[q])}
-        numbers |= {"alike": alike(old.point.mac[r]), "measured": float(np.exp(logs[r]))}
+        numbers |= {"alike": evidence.alike(old.point.mac[r]), "measured": float(np.exp(logs[r]))}
         for price, factor, looks in slips:
             said = found("far-from-model", str(modes[r]), **numbers, looks=looks)
             yield Mistake(said, [("frequency", np.s_[:, r], over(factor))], price)
-
-
-def alike(mac: float) -> str:
-    """Return how alike the shapes of a pair are, in words."""
-    return "" if np.isnan(mac) else f" (MAC {mac:.2f})"
 
 
 POWERS = (1, -1, 2, -2, 3, -3, 6, -6, 9, -9)  # powers of ten by which a value is off
@@ -257,10 +252,8 @@ def other_numbers(old: Explanation) -> Iterator[Mistake]:
         index = assigned(np.where(known, cost, 1.0 - np.eye(len(cost))))
         rows = np.flatnonzero(index != np.arange(index.size))
         if rows.size:
-            own, right = (
-                enumeration([str(modes[i]) for i in r], MANY) for r in (rows, index[rows])
-            )
-            numbers = {"set": name, "other": without(k, sets), "modes": own, "of": right}
+            own, of = (enumeration([str(modes[i]) for i in r], MANY) for r in (rows, index[rows]))
+            numbers = {"set": name, "other": without(k, sets), "modes": own, "of": of}
             order = partial(np.take, indices=np.argsort(index), axis=0)
             edits = [(x, k, order) for x in of_sets]
             yield Mistake(Finding("set-numbers", name, numbers), edits, moves=True)
