@@ -201,14 +201,12 @@ def import_model(
     )
 
 
-def _terms_of(
-    names: Sequence[str], functions: Functions
-) -> dict[Quantity, dict[str, Sequence[str]]]:
+def _terms_of(names: Sequence[str], given: Functions) -> dict[Quantity, dict[str, Sequence[str]]]:
     """Return the terms of each parameter in either matrix: those declared, or itself."""
     expected = "another name, as this is that of the term without parameters"
     faults = [Fault("", f"--parameter {BASE}", expected, f"'{BASE}'")] * (BASE in names)
     out: dict[Any, dict[str, Sequence[str]]] = {x: {y: (y,) for y in names} for x in QUANTITIES}
-    for name, each in functions.items():
+    for name, each in given.items():
         if name not in names:
             faults.append(Fault("", "--function", "a parameter", suggestion(name, names)))
         of = each if isinstance(each, Mapping) else dict.fromkeys(QUANTITIES, each)
@@ -340,7 +338,6 @@ MODULI: Mapping[str, tuple[Sequence[int], ...]] = {
 }
 """Places of moduli in the lines of ``*ELASTIC``, by its type; lines repeat for temperatures."""
 
-
 TARGETS: Mapping[str, tuple[str, str]] = {
     "material": ("ELASTIC", "MATERIAL"),
     "density": ("DENSITY", "MATERIAL"),
@@ -350,10 +347,8 @@ TARGETS: Mapping[str, tuple[str, str]] = {
 }
 """What a parameter may multiply: the keyword of its numbers, and the option that names it."""
 
-
 OF_MATERIAL: Mapping[Quantity, str] = {"stiffness": "material", "mass": "density"}
 """Kinds of targets that multiply the matrices of all elements of a material."""
-
 
 STEP = re.compile(r"^\*\s*FREQUENCY\s*(?:,.*)?$(?=(?:\n\*\*.*)*(\n(?!\*).)?)", re.M | re.I)
 """The line of a keyword *FREQUENCY, and whether a line that is none of a keyword is behind it."""
@@ -533,14 +528,12 @@ def job_text(
     stored: bool,
 ) -> str:
     """Return a deck with numbers times factors, which stores matrices or prints frequencies."""
-    texts = {k: text for k, (text, _) in enumerate(lines, start=1)}
-    texts |= decks.times(
-        texts, [x for x in multiplied if x.parameter in factors], factors, digits=12
-    )
+    out = {k: text for k, (text, _) in enumerate(lines, start=1)}
+    out |= decks.times(out, [x for x in multiplied if x.parameter in factors], factors, digits=12)
     ending = ", SOLVER=MATRIXSTORAGE" if stored else ""
     text, steps = STEP.subn(
         lambda step: f"*FREQUENCY{ending}" + "\n10" * (not stored and not step[1]),
-        "\n".join(texts.values()) + "\n",
+        "\n".join(out.values()) + "\n",
     )
     if not steps:
         raise wrong(path, "a step with *FREQUENCY", "none", "deck")
