@@ -258,9 +258,7 @@ def determined(
     left_open = knowledge.no_effect(of.idle, names)
     degrees: dict[str, list[str]] = {"do not determine": [], "hardly determine": []}
     for each in of.combinations[-1][1]:
-        if each.share < combinations.WEAK and np.linalg.norm(each.direction[of.idle]) <= np.sqrt(
-            0.5
-        ):
+        if each.share < combinations.WEAK and np.linalg.norm(each.direction[of.idle]) <= 0.5**0.5:
             degree = "do not determine" if each.share <= combinations.NONE else "hardly determine"
             degrees[degree].append(knowledge.in_words(each, names))
     for degree, texts in degrees.items():
@@ -323,22 +321,20 @@ def compared(problem: UpdatingProblem) -> Agreement:
     return Agreement(float(error[i, k]), theta, int(i), STEP * directions[k])
 
 
-def _slopes(
-    problem: UpdatingProblem, pairs: Pairs, theta: Floats, direction: Floats
-) -> list[Floats]:
-    """Return the slopes of the residuals of pairs, with a shorter step where the model needs one.
+def _slopes(problem: UpdatingProblem, pairs: Pairs, theta: Floats, d: Floats) -> list[Floats]:
+    """Return the slopes of the residuals of pairs along d, with shorter steps where need be.
 
     NaN where the model is not defined with the shortest.
     """
     for h in (STEP, STEP / 8, STEP / 64):
-        points = [theta + x * direction for x in (h / 2, -h / 2, h, -h)]
+        points = [theta + x * d for x in (h / 2, -h / 2, h, -h)]
         try:
             modes = [problem.modes(x, derivatives=False)[0] for x in points]
             vectors = [problem.vectors(each, pairs) for each in modes]
         except ModelError:
             continue
         each_group = zip(*vectors, strict=True)
-        return [(4 * (a - b) / h - (c - d) / (2 * h)) / 3 for a, b, c, d in each_group]
+        return [(4 * (a - b) / h - (e - f) / (2 * h)) / 3 for a, b, e, f in each_group]
     return [np.full(1, np.nan) for _ in problem.groups]
 
 
