@@ -114,9 +114,7 @@ def run(
     UnfinishedError
         If the work cannot be done; what is done is kept.
     """
-    carrier = (
-        workers if isinstance(workers, AbstractContextManager) else backend(workers, scheduler)
-    )
+    work = workers if isinstance(workers, AbstractContextManager) else backend(workers, scheduler)
     study = as_study(study)
     if refined is not None:
         study = replace(study, pareto=replace(study.pareto, refined=refined))
@@ -124,7 +122,7 @@ def run(
 
     def done(store: Store | None = None) -> Dataset:
         # Dense problems of a hundred unknowns are slower on several threads than on one.
-        with carrier as opened, threadpool_limits(1, user_api="blas"):
+        with work as opened, threadpool_limits(1, user_api="blas"):
             progress.workers = opened.workers
             return worked(study, Run(store, progress, opened))
 
@@ -224,9 +222,7 @@ def worked(study: Study, work: Run) -> Dataset:
 
 def _attributes(study: Study, work: Run, front: Front) -> dict[str, str | int | float]:
     total = work.total(lambda stage: stage != "shapes")
-    along, predictions, shapes = (
-        work.total(name.__eq__) for name in ("front", "predict", "shapes")
-    )
+    along, predicted, shapes = (work.total(x.__eq__) for x in ("front", "predict", "shapes"))
     refined = study.pareto.refined
     out: dict[str, str | int | float] = {
         "study": study.name,
@@ -238,7 +234,7 @@ def _attributes(study: Study, work: Run, front: Front) -> dict[str, str | int | 
         "method": front.method,
         "front_evaluations": along.model_evaluations,
         "full_eigensolutions": total.eigenproblems,
-        "prediction_eigensolutions": predictions.eigenproblems,
+        "prediction_eigensolutions": predicted.eigenproblems,
         "shape_eigensolutions": shapes.model_evaluations,
         "corrected_eigensolutions": total.corrected,
         "factorisations": total.factorisations,
