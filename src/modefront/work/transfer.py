@@ -18,7 +18,6 @@ from modefront.work.task import Costs, Done, Task, computed
 
 KNOWN = 3  # shared objects that a process keeps at most: those used last
 
-
 S = TypeVar("S", bound=type)
 
 _REGISTERED: set[type] = set()
@@ -110,7 +109,6 @@ class _Unpickler(pickle.Unpickler):
 
 _OBJECTS: OrderedDict[str, Any] = OrderedDict()
 _LOCK = threading.Lock()
-
 
 Reply = list[Done] | tuple[str, ...]
 """What a process sends back: results, or names of shared objects that it does not know."""
