@@ -156,9 +156,7 @@ def _known(data: Dataset, name: str) -> Any:
 
 def parameter_std(data: Dataset) -> Floats:
     """Return standard deviations (points, p) by errors of the data, or of the posterior; or NaN."""
-    out, best = np.full(data["theta"].values.shape, np.nan), position(data)
-    if "theta_std" in data:
-        out = data["theta_std"].values.copy()
+    out, best = np.full(data["theta"].values.shape, _known(data, "theta_std")), position(data)
     if np.isnan(out[best]).all():
         out[best] = _known(data, "posterior_std")
     return np.where(np.isfinite(out), out, np.nan)
