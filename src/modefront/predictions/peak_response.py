@@ -23,7 +23,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.random import SeedSequence
 
-from modefront import options
+from modefront import options as opt
 from modefront._typing import Arrays, Complexes, Floats
 from modefront.data.modal import ModalData
 from modefront.errors import Fault, refuse, wrong
@@ -166,10 +166,10 @@ def _zeros(pair: modal.ModalSystem, quantity: str, a: float, b: float) -> Floats
     return middle + half * roots.real[real]
 
 
-BAND = options.numbers(
+BAND = opt.numbers(
     "[lowest, highest] frequency in Hz, 0 <= lowest < highest",
-    options.array(options.NOT_NEGATIVE, 2, 2),
-    options.rising,
+    opt.array(opt.NOT_NEGATIVE, 2, 2),
+    opt.rising,
 )
 
 
@@ -197,9 +197,9 @@ class PeakResponse(modal.ModalPrediction):
     response: modal.Response
     force: modal.Force | None = None
     base: modal.Base | None = None
-    quantity: Annotated[str, options.one_of(*ORDERS)] = "receptance"
+    quantity: Annotated[str, opt.one_of(*ORDERS)] = "receptance"
     band: Annotated[tuple[float, float], BAND] | None = None
-    static: Annotated[bool, options.TRUE_OR_FALSE] = True
+    static: Annotated[bool, opt.TRUE_OR_FALSE] = True
     modes: modal.ModeCount | None = None
     damping: modal.Damping = modal.MEASURED
 
