@@ -385,12 +385,6 @@ def _page(data: Dataset, of: RecordedPrediction) -> canvas.Picture:
 
 S = ParamSpec("S")
 
-PLOTS = (
-    *("front", "parameters", "frequencies", "mac"),
-    *("modes", "predictions", "uncertainty", "corner", "minima"),
-)
-"""Pictures in the order of their files."""
-
 
 def _method(
     draw: Callable[Concatenate[Dataset, S], canvas.Picture], what: str = "", *needed: str
@@ -431,6 +425,10 @@ class Plots(Shown):
     )
     corner = _method(corner, "draws of a posterior", "sample_theta")
     minima = _method(minima)
+
+
+PLOTS = tuple(name for name in vars(Plots) if not name.startswith("_"))
+"""Pictures in the order of their files."""
 
 
 def figures(data: Dataset) -> Iterator[tuple[str, canvas.Picture]]:
