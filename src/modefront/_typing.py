@@ -1,5 +1,7 @@
 """Array types used in signatures."""
 
+from collections.abc import Mapping
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -8,3 +10,4 @@ Complexes = NDArray[np.complex128]
 Ints = NDArray[np.intp]
 Ints32 = NDArray[np.int32]
 Bools = NDArray[np.bool_]
+Arrays = Mapping[str, Floats]  # by name

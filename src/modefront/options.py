@@ -20,8 +20,8 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from enum import Enum
-from functools import cache, partial
-from itertools import pairwise, repeat
+from functools import cache
+from itertools import pairwise, repeat, starmap
 from pathlib import Path
 from typing import Annotated, Any, Literal, TypeVar, get_args, get_origin, get_type_hints
 
@@ -269,11 +269,8 @@ def keys(required: Sequence[str], **known: Requirement) -> tuple[Option, ...]:
 
 
 @cache
-def _declared(record: Callable[..., Any]) -> tuple[Option | partial[Option | None] | None, ...]:
-    """Return the option of each argument of a class or function, None for one that is none.
-
-    Where its requirement is that of the moment, what returns the option is there in its place.
-    """
+def _arguments(record: Callable[..., Any]) -> list[tuple[inspect.Parameter, Any, str]]:
+    """Return the arguments of a class or function with their annotations and meanings."""
     hints = get_type_hints(record, include_extras=True)
     _, _, section = (inspect.getdoc(record) or "").partition("\n----------\n")
     form = r"^([\w, ]+)(?: : |\n    )(.*(?:\n    .*)*)"  # of Attributes, or of Parameters
@@ -282,12 +279,8 @@ def _declared(record: Callable[..., Any]) -> tuple[Option | partial[Option | Non
         for names, text in re.findall(form, section, re.MULTILINE)
         for name in names.split(", ")
     }
-    out: list[Option | partial[Option | None] | None] = []
-    for each in inspect.signature(record).parameters.values():
-        hint = hints[each.name]
-        option = partial(_option, each, hint, meanings.get(each.name, ""))
-        out.append(option if _is_open(hint) else option())
-    return tuple(out)
+    arguments = inspect.signature(record).parameters.items()
+    return [(x, hints[name], meanings.get(name, "")) for name, x in arguments]
 
 
 def _option(argument: inspect.Parameter, hint: Any, meaning: str) -> Option | None:
@@ -302,8 +295,7 @@ def _option(argument: inspect.Parameter, hint: Any, meaning: str) -> Option | No
 
 def options(record: Callable[..., Any]) -> tuple[Option, ...]:
     """Return the fields of a class of records, or arguments of a function, with requirements."""
-    known = (each() if isinstance(each, partial) else each for each in _declared(record))
-    return tuple(filter(None, known))
+    return tuple(filter(None, starmap(_option, _arguments(record))))
 
 
 def schema_of(record: Callable[..., Any]) -> Schema:
@@ -332,12 +324,6 @@ def _requirement(hint: Any) -> Requirement | None:
     elif origin in (types.UnionType, typing.Union):
         known = map(_requirement, parts)
     return next((each for each in known if isinstance(each, Requirement)), None)
-
-
-def _is_open(hint: Any) -> bool:
-    """Return whether an annotation has a function that returns its requirement."""
-    parts = get_args(hint)
-    return any(map(callable, parts[1:]) if get_origin(hint) is Annotated else map(_is_open, parts))
 
 
 def check_fields(record: Any) -> None:

@@ -3,7 +3,6 @@
 import re
 from collections.abc import Iterable, Sequence
 from itertools import zip_longest
-from typing import Any
 
 import numpy as np
 from rich.cells import cell_len, chop_cells
@@ -43,9 +42,6 @@ def plural(count: int, noun: str) -> str:
 class Screen(Console):
     """A terminal, or a file of the width that ``COLUMNS`` says, 80 unless given."""
 
-    def __init__(self, **given: Any) -> None:
-        super().__init__(highlight=False, **given)
-
     def on_broken_pipe(self) -> None:
         """Raise BrokenPipeError: its caller is to know that nobody reads any more."""
         raise BrokenPipeError
@@ -77,13 +73,11 @@ class Screen(Console):
         self.show([BLANK, *self.grid(title, columns, rows, keys)] if rows else [])
 
     def grid(self, title: str, columns: Row, rows: Sequence[Row], keys: int = 1) -> list[Line]:
-        """Return the lines of a table, in blocks where it is too wide; none without rows.
+        """Return the lines of a table, in blocks where it is too wide.
 
         The first ``keys`` columns are names of the rows, which every block repeats, within a
         part `KEY` of the width. A row of one cell is a heading within the table.
         """
-        if not rows:
-            return []
         titles, *cells = [[self.shown(x) for x in row] for row in (columns, *rows)]
         widths = [max([1, *map(cell_len, PART.findall(title))]) for title in titles]
         for row in (row for row in cells if len(row) > 1):

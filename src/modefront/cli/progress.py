@@ -70,7 +70,7 @@ class _Lines:
     title: str
     costs: Costs
     clock: Callable[[], float] = time.monotonic
-    state: State | None = None
+    state: State = field(default_factory=lambda: State("", 0, 0, None))
     steps: tuple[str, ...] = ()
     taken: float = 0.0
     began: float = field(default_factory=time.monotonic)
@@ -78,7 +78,7 @@ class _Lines:
 
     def take(self, state: State) -> None:
         """Note the state of the run."""
-        if self.state is None or state.stage != self.state.stage or state.done != self.state.done:
+        if (state.stage, state.done) != (self.state.stage, self.state.done):
             self.steps = ()
         self.state, self.taken = state, self.clock()
 
@@ -88,9 +88,9 @@ class _Lines:
         self.steps = (*(x for x in before if not x.startswith(ITERATION)), text)
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
-        now, done = self.clock(), self.state.done if self.state else 0
+        now = self.clock()
         grid = Table.grid("", Column(ratio=1, min_width=LEAST), "", padding=(0, 1), expand=True)
-        count = Text(f"{done} tasks  {timedelta(seconds=int(now - self.began))}")
+        count = Text(f"{self.state.done} tasks  {timedelta(seconds=int(now - self.began))}")
         bar = ProgressBar(total=1.0, completed=self.share(now))
         grid.add_row(Text(self.title), bar, count)
         yield grid
@@ -98,7 +98,7 @@ class _Lines:
 
     def share(self, now: float) -> float:
         """Return the share of the time that has passed, by the middle of what is left."""
-        if self.is_done or self.state is None or self.state.left is None:
+        if self.is_done or self.state.left is None:
             return float(self.is_done)
         least, most = self.state.left
         left = least if most == math.inf else (least + most) / 2
@@ -109,7 +109,7 @@ class _Lines:
         """Sentence on the running task and the time left."""
         if self.is_done:
             return f"done, {self.costs.model_evaluations} models solved"
-        if self.state is None or not self.state.stage:
+        if not self.state.stage:
             return "starting"
         count = f" {self.state.of_stage}" * (self.state.of_stage > 0)
         if self.state.extent is not None:

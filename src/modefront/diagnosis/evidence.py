@@ -99,6 +99,11 @@ def pair_costs(mac: Floats, logs: Floats, of_model: Floats) -> Floats:
     return np.nan_to_num(1 - mac) + KAPPA * np.nan_to_num(np.minimum(distance, FARTHEST))
 
 
+def alike(mac: float) -> str:
+    """Return how alike the shapes of a pair are, in words."""
+    return "" if np.isnan(mac) else f" (MAC {mac:.2f})"
+
+
 def log_frequencies(frequency: Floats) -> Floats:
     """Return logarithms of a model's frequencies; those of rigid-body modes are far below all."""
     least = RIGID * frequency.max(axis=-1, keepdims=True, initial=0.0)
@@ -160,9 +165,9 @@ class Fits:
         self._solved = solved
         self.nominal = self.of(self.plain, 0 * start)
 
-    def of(self, state: State, x: Floats, *, derivatives: bool = True) -> Modes | None:
+    def of(self, state: State, x: Floats) -> Modes | None:
         """Return the modes of a state, at all coordinates, at parameters x; None where none."""
-        return self._solved(int(state.part), self.theta(state, x).tobytes(), derivatives)
+        return self._solved(int(state.part), self.theta(state, x).tobytes(), True)
 
     def units(self, count: int) -> Floats:
         """Return units of what is added to parameters; 0 where factors change them, as of parts."""

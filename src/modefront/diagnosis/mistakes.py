@@ -15,18 +15,8 @@ import numpy as np
 
 from modefront._typing import Floats, Ints
 from modefront.data.modal import ModalData
+from modefront.diagnosis import evidence
 from modefront.diagnosis import state as measured
-from modefront.diagnosis.evidence import (
-    FREQUENCY,
-    OF_MODEL,
-    RIGID,
-    SHAPE,
-    Fits,
-    Points,
-    log_frequencies,
-    mac_values,
-    pair_costs,
-)
 from modefront.diagnosis.state import NOTHING, State, loss, median, stacked
 from modefront.findings.knowledge import enumeration
 from modefront.findings.record import UNITS, Finding, found
@@ -91,10 +81,10 @@ class Mistake:
 class Explanation:
     """Assumed mistakes, the state without them, the end of a fit, and C there with the prices."""
 
-    fits: Fits
+    fits: evidence.Fits
     mistakes: tuple[Mistake, ...]
     state: State
-    point: Points
+    point: evidence.Points
     cost: float
 
     @property
@@ -143,9 +133,9 @@ def frequency_factor(old: Explanation) -> Iterator[Mistake]:
     """Yield known factors on all frequencies, and others that pairs, or modes in order, show."""
     units, logs, shown = [(0.0, *unit) for unit in UNITS], old.state.logs, set()
     measured, f = np.flatnonzero(np.isfinite(logs)), old.modes.frequency
-    elastic, ascending = np.log(f[f > RIGID * f.max()]), np.sort(logs[measured])
+    elastic, ascending = np.log(f[f > evidence.RIGID * f.max()]), np.sort(logs[measured])
     if measured.size and elastic.size:
-        of_pairs = np.median((logs - log_frequencies(f)[old.point.pairs])[measured])
+        of_pairs = np.median((logs - evidence.log_frequencies(f)[old.point.pairs])[measured])
         in_order = np.median(ascending[: elastic.size] - elastic[: measured.size])
         shown = {round(float(x), 4) for x in (of_pairs, in_order, *ascending[0] - elastic[:3])}
     for log in sorted(shown):
@@ -192,22 +182,17 @@ def wrong_frequency(old: Explanation) -> Iterator[Mistake]:
     Each of the latter is as many as the widths of normal distributions in their range.
     """
     modes, logs, f = old.data.modes, old.state.logs, old.modes.frequency
-    unknown = float(np.log(FAR / (FREQUENCY * np.sqrt(2 * np.pi)) / len(SLIPS)))
+    unknown = float(np.log(FAR / (evidence.FREQUENCY * np.sqrt(2 * np.pi)) / len(SLIPS)))
     for r in np.flatnonzero(np.isfinite(logs)).tolist():
         slips = [(0.0, factor, f", and {1 / factor:g} times it would fit") for factor in SLIPS]
-        q, log = int(old.point.pairs[r]), logs[r] - log_frequencies(f)[old.point.pairs[r]]
+        q, log = int(old.point.pairs[r]), logs[r] - evidence.log_frequencies(f)[old.point.pairs[r]]
         if np.abs(log - np.log(SLIPS)).min() >= REACH:
             slips.append((unknown, float(np.exp(log)), ""))
         numbers: dict[str, Any] = {"model": q + 1, "f": float(old.fits.comparison.frequency[q])}
-        numbers |= {"alike": alike(old.point.mac[r]), "measured": float(np.exp(logs[r]))}
+        numbers |= {"alike": evidence.alike(old.point.mac[r]), "measured": float(np.exp(logs[r]))}
         for price, factor, looks in slips:
             said = found("far-from-model", str(modes[r]), **numbers, looks=looks)
             yield Mistake(said, [("frequency", np.s_[:, r], over(factor))], price)
-
-
-def alike(mac: float) -> str:
-    """Return how alike the shapes of a pair are, in words."""
-    return "" if np.isnan(mac) else f" (MAC {mac:.2f})"
 
 
 POWERS = (1, -1, 2, -2, 3, -3, 6, -6, 9, -9)  # powers of ten by which a value is off
@@ -260,17 +245,15 @@ def other_numbers(old: Explanation) -> Iterator[Mistake]:
     of_sets = ("frequency", "damping", "shape", "std")
     for k, name in enumerate(sets if len(sets) > 1 else ()):
         rest = replace(state, **{x: np.delete(getattr(state, x), k, axis=0) for x in of_sets})
-        mac = mac_values(state.psi[k], state.seen[k], rest.mean.T)
+        mac = evidence.mac_values(state.psi[k], state.seen[k], rest.mean.T)
         distance = np.minimum(4 * np.abs(np.log(state.frequency[k])[:, None] - rest.logs), 1.0)
         cost = np.nan_to_num(1 - mac) + np.nan_to_num(distance)
         known = np.isfinite(mac) | np.isfinite(distance)
         index = assigned(np.where(known, cost, 1.0 - np.eye(len(cost))))
         rows = np.flatnonzero(index != np.arange(index.size))
         if rows.size:
-            own, right = (
-                enumeration([str(modes[i]) for i in r], MANY) for r in (rows, index[rows])
-            )
-            numbers = {"set": name, "other": without(k, sets), "modes": own, "of": right}
+            own, of = (enumeration([str(modes[i]) for i in r], MANY) for r in (rows, index[rows]))
+            numbers = {"set": name, "other": without(k, sets), "modes": own, "of": of}
             order = partial(np.take, indices=np.argsort(index), axis=0)
             edits = [(x, k, order) for x in of_sets]
             yield Mistake(Finding("set-numbers", name, numbers), edits, moves=True)
@@ -475,8 +458,8 @@ def unsigned_shapes(old: Explanation) -> Iterator[Mistake]:
     (end,) = fits.fitted([unknown])
     if modes := fits.of(state, end.x):
         phi = fits.rows(state) @ modes.phi
-        mac = mac_values(np.abs(state.mean), state.known, np.abs(phi))
-        cost = pair_costs(mac, state.logs, log_frequencies(modes.frequency))
+        mac = evidence.mac_values(np.abs(state.mean), state.known, np.abs(phi))
+        cost = evidence.pair_costs(mac, state.logs, evidence.log_frequencies(modes.frequency))
         signs = np.sign(phi[:, assigned(cost[:, : state.candidates])].T)
         edits = [("shape", ..., partial(np.multiply, signs))]
         yield Mistake(found("unsigned-shapes", "shapes"), edits)
@@ -518,7 +501,7 @@ def copied_sensor(old: Explanation) -> Iterator[Mistake]:
             continue
         sets = old.state.seen[:, :, s].sum(axis=0)
         of_model, of_noise = (sets > 0).sum(), np.maximum(sets - 1, 0).sum()
-        usual = np.log(SHAPE) * of_model + np.log(measured.SHAPE) * of_noise
+        usual = np.log(evidence.SHAPE) * of_model + np.log(measured.SHAPE) * of_noise
         subject = ", ".join(sorted((names[s], names[t])))
         said = found("copied-sensor", subject, sensor=names[s], other=names[t])
         yield Mistake(said, [("shape", np.s_[..., s], np.nan)], cost=usual)
@@ -542,7 +525,7 @@ def wrong_place(old: Explanation) -> Iterator[Mistake]:
     x = np.where(state.known, state.mean, np.nan)
     for s, nodes in ((s, nodes[nodes != given[s]]) for s, nodes in there.items()):
         r = (shapes[:, nodes] @ along[s] - x[:, [s]]) / (old.point.sigma * state.motion[s])
-        cost = loss(np.nan_to_num(r), OF_MODEL).sum(axis=0)
+        cost = loss(np.nan_to_num(r), evidence.OF_MODEL).sum(axis=0)
         apart, size = np.abs(rows - rows[s]).max(axis=1), np.abs(rows[s]).max()
         others = [names[t] for t in np.flatnonzero(apart <= ACCUMULATED * size) if t != s]
         too = f", where the model has {enumeration(others, MANY)} too" if others else ""
@@ -586,13 +569,10 @@ def wrong_direction(old: Explanation) -> Iterator[Mistake]:
 def counted_from_one(old: Explanation) -> Iterator[Mistake]:
     """Yield all sensors at the node, or the degree of freedom, before their own."""
     what = "degrees of freedom" if len(old.fits.geometry.axes) == 1 else "nodes"
-    before = Mistake(found("counted-from-one", what, what=what), [("nodes", ..., _before)])
+    edits = [("nodes", ..., lambda nodes: np.maximum(nodes - 1, -1))]
+    before = Mistake(found("counted-from-one", what, what=what), edits)
     if old.state.nodes.all() and old.fits.rows(before.undone(old.state)).any(axis=1).all():
         yield before
-
-
-def _before(nodes: Ints) -> Ints:
-    return np.maximum(nodes - 1, -1)
 
 
 MISTAKES: Sequence[Callable[[Explanation], Iterator[Mistake]]] = (

@@ -10,15 +10,8 @@ from operator import attrgetter
 import numpy as np
 
 from modefront.diagnosis.comparison import Comparison, of_few_sets
-from modefront.diagnosis.evidence import ENOUGH, Fits
-from modefront.diagnosis.mistakes import (
-    FOREIGN,
-    MISTAKES,
-    PROBABILITY,
-    Explanation,
-    Mistake,
-    alike,
-)
+from modefront.diagnosis.evidence import ENOUGH, Fits, alike
+from modefront.diagnosis.mistakes import FOREIGN, MISTAKES, PROBABILITY, Explanation, Mistake
 from modefront.diagnosis.state import State, stacked
 from modefront.findings.knowledge import enumeration
 from modefront.findings.record import Finding, found

@@ -96,16 +96,14 @@ def combinations(
     return decompose(G, ROUNDING * float(np.sqrt(w @ sizes(problem) ** 2)))
 
 
-def jacobian(
-    problem: UpdatingProblem, evaluation: Evaluation, weights: Floats, unit: Floats
-) -> Floats:
+def jacobian(problem: UpdatingProblem, model: Evaluation, weights: Floats, unit: Floats) -> Floats:
     """Return the changes (rows, p) of the weighted residuals by a unit of each parameter.
 
     No combination changes a group by more than its measured values: where it does to first order,
     as it does shapes of close modes, it does so for small steps alone.
     """
     out = []
-    for w, residual, most in zip(weights, evaluation.residuals, sizes(problem), strict=True):
+    for w, residual, most in zip(weights, model.residuals, sizes(problem), strict=True):
         G = residual.dr * unit
         if np.linalg.norm(G, 2) > most:
             U, sigma, Vt = np.linalg.svd(G, full_matrices=False)
@@ -190,9 +188,7 @@ def decompose(G: Floats, least: float = 0.0) -> list[Combination]:
     share = np.where(sigma > least, sigma, 0.0) / (sigma[0] if sigma[0] > 0 else 1.0)
     starts = np.flatnonzero(np.diff(share, prepend=np.inf) < -ROUNDING)
     Vt = np.concatenate([_told_apart(part) for part in np.split(Vt, starts[1:])])
-    return [
-        Combination(v, float(s), float(part)) for s, part, v in zip(sigma, share, Vt, strict=True)
-    ]
+    return [Combination(v, float(s), float(x)) for s, x, v in zip(sigma, share, Vt, strict=True)]
 
 
 def _told_apart(Vt: Floats) -> Floats:

@@ -87,7 +87,10 @@ def scale_at(problem: UpdatingProblem, theta: Floats) -> Scale:
             return last
     unit, model = problem.upper - problem.lower, matrices_at(problem.model, theta)
     if model is not None:
-        per_K, per_M = _of_stiffness(model, theta, _shift(problem)), _of_mass(model.mass, theta)
+        f = problem.data.mean_frequency[np.isfinite(problem.data.mean_frequency)]
+        elastic = f[f > RIGID * f.max(initial=0.0)]
+        shift = SHIFT * (2 * np.pi * float(elastic.min())) ** 2 if elastic.size else 0.0
+        per_K, per_M = _of_stiffness(model, theta, shift), _of_mass(model.mass, theta)
         unit = 1 / np.maximum(np.maximum(per_K, per_M), 1 / unit)
     scale = Scale(theta.copy(), unit, problem.lower > 0, model)
     # with a problem that is no more, its model goes
@@ -96,14 +99,6 @@ def scale_at(problem: UpdatingProblem, theta: Floats) -> Scale:
 
 
 _LAST: list[tuple[ref[UpdatingProblem], Scale]] = []
-
-
-def _shift(problem: UpdatingProblem) -> float:
-    """Return an eigenvalue far below those that are measured, but for rigid-body modes."""
-    f = problem.data.mean_frequency
-    f = f[np.isfinite(f)]
-    elastic = f[f > RIGID * f.max(initial=0.0)]
-    return SHIFT * (2 * np.pi * float(elastic.min())) ** 2 if elastic.size else 0.0
 
 
 def _of_stiffness(model: MatrixModel, theta: Floats, shift: float) -> Floats:

@@ -156,15 +156,13 @@ class Along:
 
     def draw(self, axes: Axes, values: Floats, colour: str = COLOURS[0], label: str = "") -> None:
         """Draw values (points,): full where Pareto optimal, hollow where not."""
-        x, y, best = self.x[self.front], values[self.front], self.is_best
+        x, y, best, at = self.x[self.front], values[self.front], self.is_best, self.others
         if is_path(self.data):
             axes.plot(x, np.where(best, y, np.nan), "-", color=colour, lw=1, alpha=0.6)
         axes.plot(x[best], y[best], "o", color=colour, ms=4, label=label or "model")
         axes.plot(x[~best], y[~best], "o", mfc="w", mec=colour, ms=4)
-        axes.plot(
-            self.x[self.others], values[self.others], "D", color=colour, mec="k", mew=0.6, ms=5
-        )
-        others = np.concatenate([y[best], values[self.others]])
+        axes.plot(self.x[at], values[at], "D", color=colour, mec="k", mew=0.6, ms=5)
+        others = np.concatenate([y[best], values[at]])
         others = others[np.isfinite(others)]
         if not others.size or axes.get_yscale() != "linear":
             return

@@ -16,7 +16,6 @@ from modefront.plots.canvas import COLOURS, COLUMNS, Picture, names_of, panels, 
 REACH, NAMES = 0.15, 14
 """Greatest displacement over the diagonal of the model; sensors up to which each is named."""
 
-
 _Shape: TypeAlias = tuple[str, Floats, Floats, Floats]
 """One mode: title; (sensors,) of the model; (sets, sensors) as measured, in the same scale; and
 displacements (nodes, 3), of no nodes without geometry."""

@@ -156,9 +156,7 @@ def _known(data: Dataset, name: str) -> Any:
 
 def parameter_std(data: Dataset) -> Floats:
     """Return standard deviations (points, p) by errors of the data, or of the posterior; or NaN."""
-    out, best = np.full(data["theta"].values.shape, np.nan), position(data)
-    if "theta_std" in data:
-        out = data["theta_std"].values.copy()
+    out, best = np.full(data["theta"].values.shape, _known(data, "theta_std")), position(data)
     if np.isnan(out[best]).all():
         out[best] = _known(data, "posterior_std")
     return np.where(np.isfinite(out), out, np.nan)
@@ -387,12 +385,6 @@ def _page(data: Dataset, of: RecordedPrediction) -> canvas.Picture:
 
 S = ParamSpec("S")
 
-PLOTS = (
-    *("front", "parameters", "frequencies", "mac"),
-    *("modes", "predictions", "uncertainty", "corner", "minima"),
-)
-"""Pictures in the order of their files."""
-
 
 def _method(
     draw: Callable[Concatenate[Dataset, S], canvas.Picture], what: str = "", *needed: str
@@ -433,6 +425,10 @@ class Plots(Shown):
     )
     corner = _method(corner, "draws of a posterior", "sample_theta")
     minima = _method(minima)
+
+
+PLOTS = tuple(name for name in vars(Plots) if not name.startswith("_"))
+"""Pictures in the order of their files."""
 
 
 def figures(data: Dataset) -> Iterator[tuple[str, canvas.Picture]]:

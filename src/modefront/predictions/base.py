@@ -14,8 +14,9 @@ from operator import attrgetter
 from typing import Annotated, Any, ClassVar, Literal, Protocol, Self
 
 import numpy as np
+from numpy.random import SeedSequence
 
-from modefront._typing import Floats
+from modefront._typing import Arrays, Floats
 from modefront.data.modal import ModalData
 from modefront.datasets import Dataset
 from modefront.errors import Fault, refuse
@@ -205,11 +206,8 @@ class PredictionKind(Shown):
         by, start = "by the posterior, to first order", f"posterior_{self.dimension}_log"
         for x in self.ranged:
             name, P, unit = f"posterior_{x.name}", x.symbol, "" if x.symbol else x.unit
-            first, of, squared = (
-                start if P else name,
-                f"ln {P}" if P else x.name,
-                unit and unit + "2",
-            )
+            first, of = (start, f"ln {P}") if P else (name, x.name)
+            squared = unit and f"{unit}2"
             yield Variable(f"{first}_std", own, f"standard deviation of {of} {by}", unit=unit)
             yield Variable(f"{first}_covariance", both, f"covariance of {of} {by}", unit=squared)
             if P:
@@ -263,18 +261,14 @@ class Prediction(Protocol):
         Raises InputError with what this model cannot predict.
         """
 
-    def evaluate(
-        self, problem: UpdatingProblem, theta: Floats, seed: np.random.SeedSequence, /
-    ) -> Mapping[str, Floats]:
+    def evaluate(self, problem: UpdatingProblem, theta: Floats, seed: SeedSequence, /) -> Arrays:
         """Return the values of a model, (places,) under each variable's key; NaN where none.
 
         Raises ModelError where the model cannot be evaluated at ``theta``, InputError where the
         options of a prediction do not suit it there.
         """
 
-    def check(
-        self, problem: UpdatingProblem, theta: Floats, seed: np.random.SeedSequence, /
-    ) -> Mapping[str, Floats]:
+    def check(self, problem: UpdatingProblem, theta: Floats, seed: SeedSequence, /) -> Arrays:
         """Return the result of the kind's check at a model, (places,) each; empty without one."""
 
 
@@ -381,9 +375,7 @@ def predictions_in(data: Dataset) -> Iterator[RecordedPrediction]:
         names, load = data[f"{start}_name"].values.tolist(), data.variables.get(f"{start}_load")
         for name in dict.fromkeys(names):
             positions = tuple(i for i, each in enumerate(names) if each == name)
-            quantities = tuple(
-                quantity(data, x, i, name) for i in positions for x in kind.variables
-            )
+            values = tuple(quantity(data, x, i, name) for i in positions for x in kind.variables)
             heading = str(data[f"{start}_heading"].values[positions[0]])
             loaded = "" if load is None else str(load.values[positions[0]])
-            yield RecordedPrediction(kind, str(name), heading, loaded, positions, quantities)
+            yield RecordedPrediction(kind, str(name), heading, loaded, positions, values)

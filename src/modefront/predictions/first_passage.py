@@ -6,9 +6,10 @@ from dataclasses import dataclass, replace
 from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
+from numpy.random import SeedSequence
 
-from modefront import options
-from modefront._typing import Floats
+from modefront import options as opt
+from modefront._typing import Arrays, Floats
 from modefront.data.modal import ModalData
 from modefront.errors import Fault, refuse, wrong
 from modefront.models.base import Model
@@ -21,23 +22,21 @@ from modefront.rounding import ACCUMULATED, WRITTEN
 STEPS_A_PERIOD = 20  # time steps in the shortest period, where the step is not given
 MOST_STEPS = 10**6  # time steps at most: convolutions of more fill the memory
 
-LEVELS = options.numbers(
-    "a list of different levels above 0", options.array(options.ABOVE_ZERO, 1, once=True)
-)
+LEVELS = opt.numbers("a list of different levels above 0", opt.array(opt.ABOVE_ZERO, 1, once=True))
 
-MODULATION = options.Requirement(
+MODULATION = opt.Requirement(
     "a list of [time in s, factor], times rising from 0 or more, one factor not zero",
     {
-        **options.array(options.array([options.NOT_NEGATIVE, options.NUMBER], 2, 2), 1),
+        **opt.array(opt.array([opt.NOT_NEGATIVE, opt.NUMBER], 2, 2), 1),
         "contains": {"items": [{}, {"not": {"const": 0}}]},
     },
     lambda value: tuple((float(t), float(q)) for t, q in value),
-    lambda value: options.rising([t for t, _ in value]) and any(factor for _, factor in value),
+    lambda value: opt.rising([t for t, _ in value]) and any(factor for _, factor in value),
 )
 
 
 @dataclass(frozen=True)
-class SoilFilter(options.Checked):
+class SoilFilter(opt.Checked):
     """A filter of white noise by a layer of soil, after Kanai and Tajimi.
 
     Raises InputError for values that are not possible.
@@ -48,8 +47,8 @@ class SoilFilter(options.Checked):
     damping : damping ratio of the soil, above 0
     """
 
-    frequency: Annotated[float, options.number("a frequency of the soil above 0 Hz", above=0)]
-    damping: Annotated[float, options.number("a damping ratio of the soil above 0", above=0)]
+    frequency: Annotated[float, opt.number("a frequency of the soil above 0 Hz", above=0)]
+    damping: Annotated[float, opt.number("a damping ratio of the soil above 0", above=0)]
 
     @property
     def omega(self) -> float:
@@ -57,7 +56,7 @@ class SoilFilter(options.Checked):
         return 2 * math.pi * self.frequency
 
 
-FILTER = options.nested("a table { frequency, damping }, a Kanai-Tajimi filter", SoilFilter)
+FILTER = opt.nested("a table { frequency, damping }, a Kanai-Tajimi filter", SoilFilter)
 
 
 # 15 fields: the keys of a table of a study file.
@@ -90,17 +89,17 @@ class Passage(modal.ModalPrediction):
 
     name: modal.Name
     response: modal.Response
-    density: Annotated[float, options.number("a spectral density above 0", above=0)]
+    density: Annotated[float, opt.number("a spectral density above 0", above=0)]
     sided: Literal["one", "two"]
     levels: Annotated[Sequence[float], LEVELS]
-    duration: Annotated[float, options.number("a duration above 0 s", above=0)]
+    duration: Annotated[float, opt.number("a duration above 0 s", above=0)]
     force: modal.Forces | None = None
     base: modal.Base | None = None
-    step: Annotated[float, options.number("a time step above 0 s", above=0)] | None = None
+    step: Annotated[float, opt.number("a time step above 0 s", above=0)] | None = None
     filter: Annotated[SoilFilter, FILTER] | None = None
     modulation: Annotated[Sequence[tuple[float, float]], MODULATION] | None = None
-    samples: Annotated[int, options.whole(2, 10**8)] = 2000
-    method: Annotated[str, options.one_of(*reliability.METHODS)] = "importance"
+    samples: Annotated[int, opt.whole(2, 10**8)] = 2000
+    method: Annotated[str, opt.one_of(*reliability.METHODS)] = "importance"
     modes: modal.ModeCount | None = None
     damping: modal.Damping = modal.MEASURED
 
@@ -232,9 +231,7 @@ class Passage(modal.ModalPrediction):
             (lambda t: np.interp(t, times, factors)) if self.modulation else None,
         )
 
-    def evaluate(
-        self, problem: UpdatingProblem, theta: Floats, seed: np.random.SeedSequence
-    ) -> Mapping[str, Floats]:
+    def evaluate(self, problem: UpdatingProblem, theta: Floats, seed: SeedSequence) -> Arrays:
         """Return the probability at each level and its coefficient of variation, (levels,).
 
         Raises ModelError where the model cannot be evaluated at ``theta``, InputError where the
@@ -244,9 +241,7 @@ class Passage(modal.ModalPrediction):
         P, variation = reliability.estimate(reliability.METHODS[self.method], *asked)
         return {"probability": P, "variation": variation}
 
-    def check(
-        self, problem: UpdatingProblem, theta: Floats, seed: np.random.SeedSequence
-    ) -> Mapping[str, Floats]:
+    def check(self, problem: UpdatingProblem, theta: Floats, seed: SeedSequence) -> Arrays:
         """Return P with half the time step over P, and its standard error, (levels,)."""
         asked = self.problem(problem, theta), np.array(self.levels), self.samples, seed
         ratio, error = reliability.step_effect(reliability.METHODS[self.method], *asked)

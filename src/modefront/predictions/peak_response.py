@@ -14,16 +14,17 @@ every term taken by its absolute value.
 """
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Annotated, Any, ClassVar, Self
 
 import numpy as np
 from numpy.polynomial import chebyshev
+from numpy.random import SeedSequence
 
-from modefront import options
-from modefront._typing import Complexes, Floats
+from modefront import options as opt
+from modefront._typing import Arrays, Complexes, Floats
 from modefront.data.modal import ModalData
 from modefront.errors import Fault, refuse, wrong
 from modefront.models.base import Model
@@ -165,10 +166,10 @@ def _zeros(pair: modal.ModalSystem, quantity: str, a: float, b: float) -> Floats
     return middle + half * roots.real[real]
 
 
-BAND = options.numbers(
+BAND = opt.numbers(
     "[lowest, highest] frequency in Hz, 0 <= lowest < highest",
-    options.array(options.NOT_NEGATIVE, 2, 2),
-    options.rising,
+    opt.array(opt.NOT_NEGATIVE, 2, 2),
+    opt.rising,
 )
 
 
@@ -196,9 +197,9 @@ class PeakResponse(modal.ModalPrediction):
     response: modal.Response
     force: modal.Force | None = None
     base: modal.Base | None = None
-    quantity: Annotated[str, options.one_of(*ORDERS)] = "receptance"
+    quantity: Annotated[str, opt.one_of(*ORDERS)] = "receptance"
     band: Annotated[tuple[float, float], BAND] | None = None
-    static: Annotated[bool, options.TRUE_OR_FALSE] = True
+    static: Annotated[bool, opt.TRUE_OR_FALSE] = True
     modes: modal.ModeCount | None = None
     damping: modal.Damping = modal.MEASURED
 
@@ -271,9 +272,7 @@ class PeakResponse(modal.ModalPrediction):
         refuse(faults)
         return out
 
-    def evaluate(
-        self, problem: UpdatingProblem, theta: Floats, _: np.random.SeedSequence
-    ) -> Mapping[str, Floats]:
+    def evaluate(self, problem: UpdatingProblem, theta: Floats, _: SeedSequence) -> Arrays:
         """Return the height of the greatest peak and its frequency in Hz, each (responses,).
 
         NaN where there is no local maximum within the band. Raises ModelError where the model
@@ -289,8 +288,6 @@ class PeakResponse(modal.ModalPrediction):
                 out[:, o] = height[k], omega[k] / (2 * np.pi)
         return {"peak": out[0], "frequency": out[1]}
 
-    def check(
-        self, _problem: UpdatingProblem, _theta: Floats, _seed: np.random.SeedSequence
-    ) -> Mapping[str, Floats]:
+    def check(self, _problem: UpdatingProblem, _theta: Floats, _seed: SeedSequence) -> Arrays:
         """Return nothing: peaks are exact."""
         return {}

@@ -215,30 +215,24 @@ def _given_failures(
     return weights
 
 
-def _one_of_all(
-    z: Floats, _: tuple[Ints, Ints], level: float, magnitudes: Iterator[Floats]
-) -> Floats:
+def _one_of_all(z: Floats, _: tuple[Ints, Ints], level: float, sizes: Iterator[Floats]) -> Floats:
     exceedances = np.zeros(len(z))
-    for x in magnitudes:
+    for x in sizes:
         exceedances += np.count_nonzero(x > level, axis=1)
     # The failure that was drawn is one of them, even where rounding leaves it on the barrier.
     return 1 / np.maximum(exceedances, 1)
 
 
-def _first(
-    z: Floats, drawn: tuple[Ints, Ints], level: float, magnitudes: Iterator[Floats]
-) -> Floats:
+def _first(z: Floats, drawn: tuple[Ints, Ints], level: float, sizes: Iterator[Floats]) -> Floats:
     first, steps = np.ones(len(z), dtype=bool), np.arange(z.shape[-1])
-    for output, x in enumerate(magnitudes):
+    for output, x in enumerate(sizes):
         # At the time of the failure drawn, outputs of lower number come before it.
         end = drawn[1] + (output < drawn[0])
         first &= ~np.any((x > level) & (steps < end[:, None]), axis=1)
     return first.astype(np.float64)
 
 
-def _any_radius(
-    z: Floats, _: tuple[Ints, Ints], level: float, magnitudes: Iterator[Floats]
-) -> Floats:
+def _any_radius(z: Floats, _: tuple[Ints, Ints], level: float, sizes: Iterator[Floats]) -> Floats:
     count, half_nu = len(z), z[0].size / 2
     # Below, y = ρ²/2 throughout; x is that of z* and not of e, hence the radius.
     energy = np.einsum("sik,sik->s", z, z) / 2
@@ -247,7 +241,7 @@ def _any_radius(
     least = NEGLIGIBLE * gammaincc(half_nu, energy)
     floor = level * np.sqrt(energy / gammainccinv(half_nu, least))
     largest, total = np.zeros((2, count))
-    for x in magnitudes:
+    for x in sizes:
         np.maximum(largest, x.max(axis=1), out=largest)
         # Flat: NumPy finds the few that are true of a row many times faster than of a table.
         sample, step = np.divmod(np.flatnonzero(x > floor[:, None]), x.shape[1])

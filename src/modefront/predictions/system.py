@@ -14,7 +14,7 @@ from typing import Annotated, Any, ClassVar, TypeVar
 
 import numpy as np
 
-from modefront import options
+from modefront import options as opt
 from modefront._typing import Floats
 from modefront.data.modal import ModalData
 from modefront.errors import Fault, ModelError, refuse, suggestion, wrong
@@ -68,10 +68,8 @@ BEYOND = 1.5  # end of the modes superposed, if their number is not given, over 
 ABOVE = 1.1  # end of the band where none is given, over the highest measured frequency
 NAMED = "the name of a sensor or output, or a table of them with weights that are not zero"
 
-WEIGHTS = options.any_of(
-    options.NAME, options.table_of(options.any_of(options.ABOVE_ZERO, options.BELOW_ZERO), 1)
-)
-RATIO: options.Schema = {"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1}
+WEIGHTS = opt.any_of(opt.NAME, opt.table_of(opt.any_of(opt.ABOVE_ZERO, opt.BELOW_ZERO), 1))
+RATIO: opt.Schema = {"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1}
 
 
 def _is_printable(value: Any) -> bool:
@@ -80,7 +78,7 @@ def _is_printable(value: Any) -> bool:
         return all(map(_is_printable, value.values()))
     if isinstance(value, list):
         return all(map(_is_printable, value))
-    return options.is_name(value) if isinstance(value, str) else True
+    return opt.is_name(value) if isinstance(value, str) else True
 
 
 def _named_weights(value: Any) -> dict[str, float]:
@@ -99,46 +97,44 @@ def _damping(value: Any) -> str | float | tuple[float, ...]:
     return value if isinstance(value, str) else float(value)
 
 
-Name = Annotated[str, options.text("what the prediction is called")]
+Name = Annotated[str, opt.text("what the prediction is called")]
 
 Force = Annotated[
-    str | Mapping[str, float], options.Requirement(NAMED, WEIGHTS, _named_weights, _is_printable)
+    str | Mapping[str, float], opt.Requirement(NAMED, WEIGHTS, _named_weights, _is_printable)
 ]
 """One force; kept as weights by the name of a sensor or output."""
 
 Forces = Annotated[
     str | Mapping[str, float] | Sequence[str | Mapping[str, float]],
-    options.Requirement(
+    opt.Requirement(
         f"{NAMED}; or a list of these",
-        options.any_of(WEIGHTS, options.array(WEIGHTS, 1)),
+        opt.any_of(WEIGHTS, opt.array(WEIGHTS, 1)),
         lambda value: tuple(map(_named_weights, value if isinstance(value, list) else [value])),
         _is_printable,
     ),
 ]
 """Forces that are independent of one another; kept as such weights of each."""
 
-Base = Annotated[str, options.text("a direction in which the base moves")]
+Base = Annotated[str, opt.text("a direction in which the base moves")]
 
 Response = Annotated[
     str | Sequence[str] | Mapping[str, str | Mapping[str, float]],
-    options.Requirement(
+    opt.Requirement(
         f"a list of sensors or outputs, or a table, name = {NAMED}",
-        options.any_of(
-            options.NAME, options.array(options.NAME, 1, once=True), options.table_of(WEIGHTS, 1)
-        ),
+        opt.any_of(opt.NAME, opt.array(opt.NAME, 1, once=True), opt.table_of(WEIGHTS, 1)),
         _responses,
-        lambda value: _is_printable(value) and all(map(options.is_name, value)),
+        lambda value: _is_printable(value) and all(map(opt.is_name, value)),
     ),
 ]
 """Responses; kept as weights of sensors and outputs by the name of each."""
 
-ModeCount = Annotated[int, options.whole(1, 10**9)]
+ModeCount = Annotated[int, opt.whole(1, 10**9)]
 
 Damping = Annotated[
     str | float | Sequence[float],
-    options.Requirement(
+    opt.Requirement(
         f"'{MEASURED}', or a ratio above 0 and below 1, or a list of them, one a mode",
-        options.any_of({"enum": [MEASURED]}, RATIO, options.array(RATIO, 1)),
+        opt.any_of({"enum": [MEASURED]}, RATIO, opt.array(RATIO, 1)),
         _damping,
     ),
 ]
@@ -159,7 +155,7 @@ class ModalPrediction(Shown):
 
     def __post_init__(self) -> None:
         """Bring the fields into plain Python, and refuse what contradicts itself."""
-        options.check_fields(self)
+        opt.check_fields(self)
         refuse(self.contradictions())
 
     @property

@@ -157,8 +157,7 @@ def _measured_std(data: Dataset) -> Floats:
     deviation = np.where(known, f - np.nansum(f, axis=0) / count, 0.0)
     scatter = np.sqrt((deviation**2).sum(axis=0) / (count - 1) / count)
     given = np.sqrt((np.where(known, std, 0.0) ** 2).sum(axis=0)) / count
-    out: Floats = np.where(np.isfinite(given), given, np.where(count > 1, scatter, np.nan))
-    return out
+    return np.where(np.isfinite(given), given, np.where(count > 1, scatter, np.nan))
 
 
 def _geometry(data: Dataset, arrays: _Arrays) -> dict[str, Any] | None:
@@ -235,18 +234,14 @@ def page(results: Sequence[tuple[str, Dataset]]) -> str:
 
 def page_of(title: str, data: str, name: str) -> str:
     """Return the page with a title, data in base64, and the script of a name."""
-    folder = files("modefront.reports")
-    whole, style, script = (
-        (folder / x).read_text(encoding="utf-8") for x in ("page.html", "style.css", name)
-    )
+    folder, names = files("modefront.reports"), ("page.html", "style.css", name)
+    whole, style, script = ((folder / x).read_text(encoding="utf-8") for x in names)
     policy = (
         f"default-src 'none'; script-src '{_digest(script)}'; style-src '{_digest(style)}'; "
         "base-uri 'none'; form-action 'none'"
     )
-    shown = "".join(c if c.isprintable() else " " for c in title)
-    return whole.format(
-        policy=policy, title=html.escape(shown), style=style, data=data, script=script
-    )
+    title = html.escape("".join(c if c.isprintable() else " " for c in title))
+    return whole.format(policy=policy, title=title, style=style, data=data, script=script)
 
 
 def report(folders: Path | str | Sequence[Path | str], output: Path | str | None = None) -> Path:

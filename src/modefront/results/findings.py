@@ -40,10 +40,7 @@ def findings(
 
 def as_values(findings: Sequence[Finding]) -> dict[str, list[str]]:
     """Return the variables of results that hold findings: sentences, and records."""
-    return {
-        "finding": [str(finding) for finding in findings],
-        "finding_record": [as_text(finding) for finding in findings],
-    }
+    return {"finding": list(map(str, findings)), "finding_record": list(map(as_text, findings))}
 
 
 def _search(problem: UpdatingProblem, front: Front) -> Iterator[Finding]:

@@ -5,7 +5,7 @@ that predictions differ by the models alone. To first order the scatter needs tw
 axis of the posterior; with draws, the models drawn.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import compress, product
@@ -14,7 +14,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from modefront._typing import Floats
+from modefront._typing import Arrays, Floats
 from modefront.datasets import ArrayDataset, Dataset
 from modefront.errors import Fault, InputError, ModelError, UnfinishedError
 from modefront.findings.knowledge import enumeration
@@ -34,8 +34,6 @@ from modefront.uncertainty import prediction as spread
 from modefront.uncertainty.scatter import Posterior
 from modefront.work.store import hash_text
 from modefront.work.task import Executor, Key, Task, seed_sequence
-
-Arrays = Mapping[str, Floats]
 
 T = TypeVar("T")
 
@@ -298,7 +296,7 @@ def _predicted(
 ) -> Arrays | None:
     """Return a prediction at a model by key; without a file, None where it cannot be solved."""
     try:
-        values: Arrays = getattr(prediction, method)(problem, theta, numbers)
+        return getattr(prediction, method)(problem, theta, numbers)
     except (InputError, ModelError) as error:
         if not file:
             return None
@@ -310,7 +308,6 @@ def _predicted(
             Fault(file, f"{place} {fault.place}", f"{fault.expected} of '{label}'", fault.found)
             for fault in error.faults
         ) from None
-    return values
 
 
 End = tuple[ResultVariable, float, int]

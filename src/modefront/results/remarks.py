@@ -121,10 +121,8 @@ def places(data: Dataset, chosen: Bools) -> str:
     at = enumerate(np.flatnonzero(chosen).tolist())
     # Neighbours have the same distance of their places along the front and among those chosen.
     parts: list[str] = []
-    for _, neighbours in groupby(
-        at, lambda x: along[x[1]] - x[0] if x[1] in along else labels[x[1]]
-    ):
-        run = [labels[i] for _, i in neighbours]
+    for _, near in groupby(at, lambda x: along[x[1]] - x[0] if x[1] in along else labels[x[1]]):
+        run = [labels[i] for _, i in near]
         parts += [f"{run[0]} to {run[-1]}"] if run[2:] else run
     if len(parts) > NAMED:
         return f"{int(chosen.sum())} of {len(labels)} models"

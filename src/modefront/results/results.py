@@ -1,7 +1,5 @@
 """Results as an object: points by their kind, models with matrices and modes, tables."""
 
-from __future__ import annotations
-
 import textwrap
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -134,14 +132,14 @@ class Results(Shown):
     problem: UpdatingProblem | None = None
 
     @cached_property
-    def dataset(self) -> xr.Dataset:
+    def dataset(self) -> "xr.Dataset":
         """All variables and attributes as a dataset of `xarray`."""
         import xarray as xr
 
         values = {name: (x.dims, x.values, x.attrs) for name, x in self.data.variables.items()}
         return xr.Dataset(values, attrs=self.data.attrs)
 
-    def __getitem__(self, name: str) -> xr.DataArray:
+    def __getitem__(self, name: str) -> "xr.DataArray":
         """Return a variable; raises KeyError where there is none of this name."""
         return self.dataset[name]
 
@@ -165,7 +163,7 @@ class Results(Shown):
         return getattr(self.dataset, name)
 
     @property
-    def plot(self) -> Plots:
+    def plot(self) -> "Plots":
         """Pictures: ``plot.front()``, ``plot.parameters()`` and so on, see `Plots`.
 
         Raises InputError without matplotlib.
@@ -176,12 +174,12 @@ class Results(Shown):
             return Plots(self.data)
 
     @property
-    def front(self) -> xr.Dataset:
+    def front(self) -> "xr.Dataset":
         """The points along the front, in their order."""
         return self.dataset.isel(point=front_points(self.data))
 
     @property
-    def edges(self) -> xr.Dataset:
+    def edges(self) -> "xr.Dataset":
         """The models that are best in one group each."""
         return self._of(Kind.EDGE)
 
@@ -243,7 +241,7 @@ class Results(Shown):
         """
         write_vtu(Path(path), self.shapes(point))
 
-    def table(self, *points: str) -> pd.DataFrame:
+    def table(self, *points: str) -> "pd.DataFrame":
         """Return one row a model, of all points or those of these labels.
 
         Columns are the kind, whether it is Pareto optimal, J of each group, the parameters, errors
@@ -264,7 +262,7 @@ class Results(Shown):
         frame = pd.DataFrame(columns, index=pd.Index(data["label"].values, name="model"))
         return frame.loc[list(points)] if points else frame
 
-    def _of(self, kind: Kind) -> xr.Dataset:
+    def _of(self, kind: Kind) -> "xr.Dataset":
         return self.dataset.isel(point=self.data["kind"].values == kind.value)
 
     def __repr__(self) -> str:

@@ -18,7 +18,6 @@ from modefront.predictions.base import Contents, PredictionKind, Variable
 FORMAT = 4
 """Version of the schema: raised when a variable changes its meaning, or a required one is added."""
 
-
 _PAGE = Path(__file__).with_name("results.md").read_text(encoding="utf-8")
 _TABLES = re.sub("<!-- table: .*?<!-- end -->", "", _PAGE, flags=re.DOTALL)  # of predictions
 
@@ -42,7 +41,6 @@ DIMENSIONS = {name: row.meaning for name, row in _rows("dimension").items()}
 
 VARIABLES, ATTRIBUTES = _rows("variable"), _rows("attribute")
 """Variables by name, without those of predictions, and attributes, numbers or texts."""
-
 
 Values = dict[str, object]  # values of variables by name
 

@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from modefront._typing import Floats, Ints
+from modefront._typing import Arrays, Floats, Ints
 from modefront.datasets import ArrayDataset, Dataset
 from modefront.errors import Fault, InputError, ModelError, writing
 from modefront.fem.structure import FACES
@@ -237,9 +237,7 @@ def _extended(Q: Floats, U: Floats) -> Floats:
     return Q
 
 
-def with_mode_shapes(
-    data: ArrayDataset, problem: UpdatingProblem, shapes: Mapping[str, Floats]
-) -> ArrayDataset:
+def with_mode_shapes(data: ArrayDataset, problem: UpdatingProblem, shapes: Arrays) -> ArrayDataset:
     """Return results with the measured modes, and ``shapes``, the modes of all points."""
     measured = problem.data
     values: Values = {

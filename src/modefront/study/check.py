@@ -26,15 +26,7 @@ from modefront.diagnosis.search import diagnose
 from modefront.errors import Fault, ModelError, refuse
 from modefront.findings import knowledge
 from modefront.findings.record import Finding, Severity, found
-from modefront.identifiability.combinations import (
-    NONE,
-    WEAK,
-    Sensitivities,
-    determination,
-    sensitivities,
-    superfluous,
-    unchanged_groups,
-)
+from modefront.identifiability import combinations
 from modefront.inputs import available_memory
 from modefront.models.base import full_of
 from modefront.models.matrices import MatrixModel
@@ -92,7 +84,7 @@ class Findings(Shown):
     mistakes: tuple[Finding, ...]
     cautions: tuple[Finding, ...]
     beside: Comparison
-    sensitivities: Sensitivities
+    sensitivities: combinations.Sensitivities
     spoilt: bool
 
     def __repr__(self) -> str:
@@ -129,7 +121,7 @@ def check(study: Study | UpdatingProblem | Path | str) -> Findings:
     study = as_study(study)
     problem = study.problem
     with threadpool_limits(1, user_api="blas"):  # threads wait for each other on small matrices
-        refuse_unchanged_groups(problem, str(study.file), unchanged_groups(problem))
+        refuse_unchanged_groups(problem, str(study.file), combinations.unchanged_groups(problem))
         nominal, beside = problem.evaluate(problem.start), compare(problem)
         mistakes = (*diagnose(beside), *(study.origin.notes if study.origin else ()))
         spoilt = any(each.kind not in HARMLESS for each in mistakes)
@@ -140,7 +132,7 @@ def check(study: Study | UpdatingProblem | Path | str) -> Findings:
         of, weights = study.noise.weighed(problem, study.uncertainty.of(problem.data))
         start = of.evaluate(of.start)
         known, left_open = determined(of, start, weights)
-        fixed = superfluous(of, start, weights)
+        fixed = combinations.superfluous(of, start, weights)
         if spoilt:
             left_open = [each for each in left_open if each.kind == "no-effect"]
         derivatives = found(
@@ -156,7 +148,7 @@ def check(study: Study | UpdatingProblem | Path | str) -> Findings:
             mistakes,
             (*(x for x in bounds if x not in mistakes), *left_open, *_of_model(beside, nominal)),
             beside,
-            sensitivities(problem, fixed),
+            combinations.sensitivities(problem, fixed),
             spoilt,
         )
 
@@ -262,12 +254,12 @@ def determined(
     ``weights`` (n,) of the groups are those of expected errors. Beside these are the parameters
     without effect, what all data leave open, and those alike.
     """
-    names, of = problem.model.parameters, determination(problem, nominal, weights)
+    names, of = problem.model.parameters, combinations.determination(problem, nominal, weights)
     left_open = knowledge.no_effect(of.idle, names)
     degrees: dict[str, list[str]] = {"do not determine": [], "hardly determine": []}
     for each in of.combinations[-1][1]:
-        if each.share < WEAK and np.linalg.norm(each.direction[of.idle]) <= np.sqrt(0.5):
-            degree = "do not determine" if each.share <= NONE else "hardly determine"
+        if each.share < combinations.WEAK and np.linalg.norm(each.direction[of.idle]) <= 0.5**0.5:
+            degree = "do not determine" if each.share <= combinations.NONE else "hardly determine"
             degrees[degree].append(knowledge.in_words(each, names))
     for degree, texts in degrees.items():
         if len(texts) > knowledge.SHOWN:
@@ -329,22 +321,20 @@ def compared(problem: UpdatingProblem) -> Agreement:
     return Agreement(float(error[i, k]), theta, int(i), STEP * directions[k])
 
 
-def _slopes(
-    problem: UpdatingProblem, pairs: Pairs, theta: Floats, direction: Floats
-) -> list[Floats]:
-    """Return the slopes of the residuals of pairs, with a shorter step where the model needs one.
+def _slopes(problem: UpdatingProblem, pairs: Pairs, theta: Floats, d: Floats) -> list[Floats]:
+    """Return the slopes of the residuals of pairs along d, with shorter steps where need be.
 
     NaN where the model is not defined with the shortest.
     """
     for h in (STEP, STEP / 8, STEP / 64):
-        points = [theta + x * direction for x in (h / 2, -h / 2, h, -h)]
+        points = [theta + x * d for x in (h / 2, -h / 2, h, -h)]
         try:
             modes = [problem.modes(x, derivatives=False)[0] for x in points]
             vectors = [problem.vectors(each, pairs) for each in modes]
         except ModelError:
             continue
         each_group = zip(*vectors, strict=True)
-        return [(4 * (a - b) / h - (c - d) / (2 * h)) / 3 for a, b, c, d in each_group]
+        return [(4 * (a - b) / h - (e - f) / (2 * h)) / 3 for a, b, e, f in each_group]
     return [np.full(1, np.nan) for _ in problem.groups]
 
 

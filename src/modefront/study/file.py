@@ -241,11 +241,8 @@ def read_predictions(
 
     They are as in their tables, without the defaults that follow from the nominal model.
     """
-    if "predict" not in root.values:
-        root.requested.append("predict")
-        return [], 0.0
     expected = f"tables {enumeration([f'[[predict.{name}]]' for name in CLASSES])}"
-    table = root.table("predict", expected)
+    table = root.table("predict", expected, None)
     if table is None:
         return [], 0.0
     slack, names = table.value("slack", SLACK, 0.0), []
@@ -284,9 +281,19 @@ def study_schema() -> dict[str, Any]:
         else opt.TABLE
         for name, kind in KINDS.items()
     }
+    # Only universal files have sensors, only others columns.
+    data = {each.name: each.schema for each in DATA}
+    endings = [".csv", *SUFFIXES, *READERS]
+    data["file"] = {**data["file"], **opt.file_name(endings, any_case=True)}
+    universal = {"properties": {"file": opt.file_name(SUFFIXES, any_case=True)}, **opt.OPEN}
     tables = {
         "study": opt.of_options(of_header()),
-        "data": _data(),
+        "data": {
+            **opt.closed(data, ["file"]),
+            "if": universal,
+            "then": {"properties": {"columns": False}, **opt.OPEN},
+            "else": {"properties": {"sensors": False}, **opt.OPEN},
+        },
         "model": opt.chosen("kind", models),
         "parameter": opt.array(opt.schema_of(Parameter), 1),
         "group": opt.array({**opt.of_options(of_group()), "anyOf": has_modes}, 1),
@@ -322,18 +329,6 @@ def add_schema(studies: Sequence[Path]) -> Path:
     path = studies[0].parent / FILE_NAME
     write_text(path, as_text())
     return path
-
-
-def _data() -> opt.Schema:
-    """Return the schema of ``[data]``: only universal files have sensors, only others columns."""
-    known = {each.name: each.schema for each in DATA}
-    known["file"] = {**known["file"], **opt.file_name([".csv", *SUFFIXES, *READERS], any_case=True)}
-    universal = {"properties": {"file": opt.file_name(SUFFIXES, any_case=True)}, **opt.OPEN}
-    without: dict[str, opt.Schema] = {
-        "then": {"properties": {"columns": False}, **opt.OPEN},
-        "else": {"properties": {"sensors": False}, **opt.OPEN},
-    }
-    return {**opt.closed(known, ["file"]), "if": universal, **without}
 
 
 FAMILIES: tuple[Family[Any], ...] = (CLASSES, KINDS, RESIDUALS, METHODS, READERS)

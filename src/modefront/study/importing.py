@@ -29,18 +29,8 @@ from modefront.models.matrices import MatrixModel, matrices
 from modefront.models.parameters import BASE, exponents_of, form_of
 from modefront.outputs import output, write_text
 from modefront.programs import PROGRAMS
+from modefront.programs import changes as decks
 from modefront.programs.base import Job, JobOptions, Quantity, read_job, write_mesh
-from modefront.programs.changes import (
-    CHANGES,
-    KEPT,
-    NUMBER,
-    Change,
-    changes,
-    deck_text,
-    text_of,
-    times,
-    write_changes,
-)
 from modefront.programs.differences import Differences, Terms, condensed
 from modefront.programs.inp import DEEPEST, keyword_of
 from modefront.study.file import add_schema
@@ -79,7 +69,7 @@ class Imported(Shown):
     floating: bool
     errors: tuple[float, ...]
     notes: tuple[str, ...]
-    changes: tuple[Change, ...] = ()
+    changes: tuple[decks.Change, ...] = ()
     program: str = ""
     deck: str = ""
 
@@ -99,8 +89,8 @@ class Imported(Shown):
                 if self.nominal.mesh is not None:
                     write_mesh(inner / "mesh.npz", self.nominal.mesh)
                 if self.changes:
-                    write_changes(inner / CHANGES, self.changes)
-                    write_text(inner / f"{KEPT}{self.changes[0].file}", self.deck)
+                    decks.write_changes(inner / decks.CHANGES, self.changes)
+                    write_text(inner / f"{decks.KEPT}{self.changes[0].file}", self.deck)
                 add_schema([inner / "study.toml"])
                 files = sorted(inner.iterdir(), key=lambda file: file.name == "study.toml")
                 return [Path(shutil.move(file, directory / file.name)) for file in files]
@@ -187,10 +177,10 @@ def import_model(
                 "them, so that to eliminate them were not exact"
             )
     frequencies, floating = _frequencies(identified, modes, notes, progress)
-    changed: dict[str, list[Change]] = {}  # by the first run of each parameter
+    changed: dict[str, list[decks.Change]] = {}  # by the first run of each parameter
     for name, path, theta in runs:
         factor = float(theta[theta != 1][0])
-        of_run, differs = changes(name, nominal_path, path, factor)
+        of_run, differs = decks.changes(name, nominal_path, path, factor)
         changed.setdefault(name, of_run)
         if differs:
             by, line = differs
@@ -207,18 +197,16 @@ def import_model(
         tuple(notes),
         tuple(chain(*changed.values())),
         program,
-        deck_text(nominal_path),
+        decks.deck_text(nominal_path),
     )
 
 
-def _terms_of(
-    names: Sequence[str], functions: Functions
-) -> dict[Quantity, dict[str, Sequence[str]]]:
+def _terms_of(names: Sequence[str], given: Functions) -> dict[Quantity, dict[str, Sequence[str]]]:
     """Return the terms of each parameter in either matrix: those declared, or itself."""
     expected = "another name, as this is that of the term without parameters"
     faults = [Fault("", f"--parameter {BASE}", expected, f"'{BASE}'")] * (BASE in names)
     out: dict[Any, dict[str, Sequence[str]]] = {x: {y: (y,) for y in names} for x in QUANTITIES}
-    for name, each in functions.items():
+    for name, each in given.items():
         if name not in names:
             faults.append(Fault("", "--function", "a parameter", suggestion(name, names)))
         of = each if isinstance(each, Mapping) else dict.fromkeys(QUANTITIES, each)
@@ -350,7 +338,6 @@ MODULI: Mapping[str, tuple[Sequence[int], ...]] = {
 }
 """Places of moduli in the lines of ``*ELASTIC``, by its type; lines repeat for temperatures."""
 
-
 TARGETS: Mapping[str, tuple[str, str]] = {
     "material": ("ELASTIC", "MATERIAL"),
     "density": ("DENSITY", "MATERIAL"),
@@ -360,10 +347,8 @@ TARGETS: Mapping[str, tuple[str, str]] = {
 }
 """What a parameter may multiply: the keyword of its numbers, and the option that names it."""
 
-
 OF_MATERIAL: Mapping[Quantity, str] = {"stiffness": "material", "mass": "density"}
 """Kinds of targets that multiply the matrices of all elements of a material."""
-
 
 STEP = re.compile(r"^\*\s*FREQUENCY\s*(?:,.*)?$(?=(?:\n\*\*.*)*(\n(?!\*).)?)", re.M | re.I)
 """The line of a keyword *FREQUENCY, and whether a line that is none of a keyword is behind it."""
@@ -433,7 +418,7 @@ def import_deck(
         modes=modes,
         progress=progress,
     )
-    own, text = [replace(x, line=lines[x.line - 1][1]) for x in multiplied], text_of(path)
+    own, text = [replace(x, line=lines[x.line - 1][1]) for x in multiplied], decks.text_of(path)
     if not all(change.line for change in own):  # what the deck includes is kept in its place
         own, text = multiplied, "".join(f"{line}\n" for line, _ in lines)
     nominal = replace(imported.nominal, name=str(path))
@@ -469,12 +454,12 @@ def _of_thickness(
 
 def targets_of(
     path: Path, lines: Lines, parameters: Mapping[str, str]
-) -> tuple[list[Change], dict[str, str]]:
+) -> tuple[list[decks.Change], dict[str, str]]:
     """Return the lines, from 1, of which parameters multiply numbers, and materials by thicknesses.
 
     Raises InputError for what is not in the deck.
     """
-    known: dict[str, dict[str, list[Change]]] = {kind: {} for kind in TARGETS}
+    known: dict[str, dict[str, list[decks.Change]]] = {kind: {} for kind in TARGETS}
     options, of_shells, keyword, row = {"MATERIAL": ""}, dict[str, str](), "", 0
     for k, (text, _) in enumerate(lines, start=1):
         if text.startswith("*"):
@@ -488,10 +473,10 @@ def targets_of(
         for kind, (of, option) in TARGETS.items():
             if of == keyword and (spans := _spans(kind, options.get("TYPE", "ISO"), row, text)):
                 changes = known[kind].setdefault(options.get(option, ""), [])
-                changes.append(Change("", path.name, k, text, spans))
+                changes.append(decks.Change("", path.name, k, text, spans))
         if keyword == "SHELL SECTION":
             of_shells[options.get("ELSET", "")] = options["MATERIAL"]
-    out, materials, faults = list[Change](), dict[str, str](), list[Fault]()
+    out, materials, faults = list[decks.Change](), dict[str, str](), list[Fault]()
     for parameter, text in parameters.items():
         kind, _, name = text.partition(":")
         if kind not in TARGETS or not name:
@@ -515,7 +500,7 @@ def _spans(kind: str, elastic: str, row: int, text: str) -> tuple[tuple[int, int
         rows = MODULI.get(elastic, ((),))
         columns = rows[(row - 1) % len(rows)]
     parts = re.finditer(r"([^,]*)(?:,|$)", text)
-    found = [NUMBER.search(text, *part.span(1)) for part in parts]
+    found = [decks.NUMBER.search(text, *part.span(1)) for part in parts]
     return tuple(x.span() for k in columns if k < len(found) and (x := found[k]))
 
 
@@ -525,7 +510,7 @@ def lines_of(path: Path, depth: int = 0) -> Iterator[tuple[str, int]]:
     Raises InputError where there is none.
     """
     with refusing(path, "a deck of CalculiX", OSError):
-        texts = text_of(path).splitlines()
+        texts = decks.text_of(path).splitlines()
     for k, text in enumerate(texts, start=1):
         keyword, options = keyword_of(text)
         if text.startswith("*") and keyword == "INCLUDE" and depth < DEEPEST:
@@ -537,18 +522,18 @@ def lines_of(path: Path, depth: int = 0) -> Iterator[tuple[str, int]]:
 def job_text(
     path: Path,
     lines: Lines,
-    multiplied: Sequence[Change],
+    multiplied: Sequence[decks.Change],
     factors: Mapping[str, float],
     *,
     stored: bool,
 ) -> str:
     """Return a deck with numbers times factors, which stores matrices or prints frequencies."""
-    texts = {k: text for k, (text, _) in enumerate(lines, start=1)}
-    texts |= times(texts, [x for x in multiplied if x.parameter in factors], factors, digits=12)
+    out = {k: text for k, (text, _) in enumerate(lines, start=1)}
+    out |= decks.times(out, [x for x in multiplied if x.parameter in factors], factors, digits=12)
     ending = ", SOLVER=MATRIXSTORAGE" if stored else ""
     text, steps = STEP.subn(
         lambda step: f"*FREQUENCY{ending}" + "\n10" * (not stored and not step[1]),
-        "\n".join(texts.values()) + "\n",
+        "\n".join(out.values()) + "\n",
     )
     if not steps:
         raise wrong(path, "a step with *FREQUENCY", "none", "deck")

@@ -12,12 +12,7 @@ from typing import Any, Unpack
 from threadpoolctl import threadpool_limits
 
 from modefront._version import __version__
-from modefront.analysis.certified import (
-    certificate_attributes,
-    certified_best,
-    certified_front,
-    certify,
-)
+from modefront.analysis import certified
 from modefront.analysis.front import analyse_front
 from modefront.datasets import Dataset
 from modefront.errors import writing
@@ -119,9 +114,7 @@ def run(
     UnfinishedError
         If the work cannot be done; what is done is kept.
     """
-    carrier = (
-        workers if isinstance(workers, AbstractContextManager) else backend(workers, scheduler)
-    )
+    work = workers if isinstance(workers, AbstractContextManager) else backend(workers, scheduler)
     study = as_study(study)
     if refined is not None:
         study = replace(study, pareto=replace(study.pareto, refined=refined))
@@ -129,7 +122,7 @@ def run(
 
     def done(store: Store | None = None) -> Dataset:
         # Dense problems of a hundred unknowns are slower on several threads than on one.
-        with carrier as opened, threadpool_limits(1, user_api="blas"):
+        with work as opened, threadpool_limits(1, user_api="blas"):
             progress.workers = opened.workers
             return worked(study, Run(store, progress, opened))
 
@@ -193,14 +186,14 @@ def worked(study: Study, work: Run) -> Dataset:
     # What follows from the points of a refined front, snapshots included, is another repetition.
     refined = study.pareto.refined
     again: Executor = work if refined is None else Within(work, ("refined", repr(refined)))
-    front = certified_front(problem, search, again if is_reduced(problem.model) else work)
+    front = certified.certified_front(problem, search, again if is_reduced(problem.model) else work)
     noise = study.noise.of(problem, study.uncertainty.of(problem.data))
     inference = None
     if noise is not None:
         minima = [x for edge in front.edges for x in edge.minima]
         known = [x.theta for x in (*(point.solution for point in front.points), *minima)]
         find = partial(most_probable, problem, noise)
-        maxima = certified_best(problem, find, known, again)
+        maxima = certified.certified_best(problem, find, known, again)
         front = replace(front, points=[*front.points, Point(Kind.MOST_PROBABLE, maxima[0])])
         draws = max(DRAWS, study.uncertainty.draws)
         along = [x.solution.theta for x in of_kind(front.points, Kind.FRONT)]
@@ -211,7 +204,7 @@ def worked(study: Study, work: Run) -> Dataset:
     at = {("nominal",): problem.evaluate, ("nominal", "weighed"): of.evaluate}
     nominal, beside = work.run([Task(key, each, (problem.start,)) for key, each in at.items()])
     more = [*analysis.identifiable.points, Point(Kind.NOMINAL, given(nominal))]
-    certify(problem, [point.solution for point in more], again)
+    certified.certify(problem, [point.solution for point in more], again)
     data = dataset(problem, replace(front, points=[*front.points, *more]), analysis)
     theta, paired = data["theta"].values, data["paired_mode"].values
     (shapes,) = again.run([Task(("shapes",), mode_shapes, (problem, theta, paired))])
@@ -229,9 +222,7 @@ def worked(study: Study, work: Run) -> Dataset:
 
 def _attributes(study: Study, work: Run, front: Front) -> dict[str, str | int | float]:
     total = work.total(lambda stage: stage != "shapes")
-    along, predictions, shapes = (
-        work.total(name.__eq__) for name in ("front", "predict", "shapes")
-    )
+    along, predicted, shapes = (work.total(x.__eq__) for x in ("front", "predict", "shapes"))
     refined = study.pareto.refined
     out: dict[str, str | int | float] = {
         "study": study.name,
@@ -243,7 +234,7 @@ def _attributes(study: Study, work: Run, front: Front) -> dict[str, str | int | 
         "method": front.method,
         "front_evaluations": along.model_evaluations,
         "full_eigensolutions": total.eigenproblems,
-        "prediction_eigensolutions": predictions.eigenproblems,
+        "prediction_eigensolutions": predicted.eigenproblems,
         "shape_eigensolutions": shapes.model_evaluations,
         "corrected_eigensolutions": total.corrected,
         "factorisations": total.factorisations,
@@ -252,7 +243,7 @@ def _attributes(study: Study, work: Run, front: Front) -> dict[str, str | int | 
         **({} if refined is None else {"refined": refined}),
         **coverage(front),
     }
-    return out | certificate_attributes(study.problem)
+    return out | certified.certificate_attributes(study.problem)
 
 
 def _set_aside(path: Path) -> None:

@@ -42,18 +42,12 @@ class Store:
 
     def read(self, task: Task[Any]) -> tuple[Any, Costs] | None:
         """Return the result of a task and what it cost; None where no whole one is kept."""
-        path = self._path(task)
-        try:
-            if not path.is_file():  # a pipe in its place would be waited for
-                return None
-            kept = path.read_bytes()
-        except OSError:
-            return None
+        path, kept = self._path(task), b""
+        with suppress(OSError):
+            if path.is_file():  # a pipe in its place would be waited for
+                kept = path.read_bytes()
         content = kept[:-CHECKSUM]
-        if kept[-CHECKSUM:] != _checksum(task, content):
-            return None
-        result, costs = load(io.BytesIO(content))
-        return result, costs
+        return load(io.BytesIO(content)) if kept[-CHECKSUM:] == _checksum(task, content) else None
 
     def write(self, task: Task[Any], result: Any, costs: Costs, seconds: float = LONG) -> None:
         """Keep the result of a task, whole or not at all; a long one outlasts a power failure."""

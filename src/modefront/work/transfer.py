@@ -18,7 +18,6 @@ from modefront.work.task import Costs, Done, Task, computed
 
 KNOWN = 3  # shared objects that a process keeps at most: those used last
 
-
 S = TypeVar("S", bound=type)
 
 _REGISTERED: set[type] = set()
@@ -111,7 +110,6 @@ class _Unpickler(pickle.Unpickler):
 _OBJECTS: OrderedDict[str, Any] = OrderedDict()
 _LOCK = threading.Lock()
 
-
 Reply = list[Done] | tuple[str, ...]
 """What a process sends back: results, or names of shared objects that it does not know."""
 
@@ -130,11 +128,10 @@ def work(message: Message, objects: dict[str, bytes]) -> Reply:
         while len(_OBJECTS) > max(KNOWN, len(message.names)):
             _OBJECTS.popitem(last=False)
         tasks: list[Task[Any]] = _Unpickler(io.BytesIO(message.content)).load()
-    return list(map(_done, tasks))
-
-
-def _done(task: Task[Any]) -> Done:
-    try:
-        return computed(task)
-    except Exception as error:  # it belongs to the caller
-        return Done(None, Costs(), 0.0, error)
+    out: list[Done] = []
+    for task in tasks:
+        try:
+            out.append(computed(task))
+        except Exception as error:  # it belongs to the caller
+            out.append(Done(None, Costs(), 0.0, error))
+    return out

@@ -45,7 +45,6 @@ ONE_THREAD = {"RAYON_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 """Environment of a process with one thread: of rslab, `modefront.linalg.products` and the BLAS. A
 BLAS that is limited only after it has started its threads makes imports take half as long again."""
 
-
 Errors: TypeAlias = tuple[type[Exception], ...]
 
 

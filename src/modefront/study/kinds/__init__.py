@@ -6,7 +6,5 @@ from modefront.study.kinds.matrices import MATRICES
 from modefront.study.kinds.mesh import MESH
 from modefront.study.kinds.sensors import ModelKind
 
-KINDS: Family[ModelKind] = Family(
-    "modefront.models", "a ModelKind", ModelKind, (CHAIN, MATRICES, MESH)
-)
+KINDS = Family[ModelKind]("modefront.models", "a ModelKind", ModelKind, (CHAIN, MATRICES, MESH))
 """All kinds by their names."""

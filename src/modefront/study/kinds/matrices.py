@@ -136,9 +136,7 @@ def _geometry(dofs: DofTable, mesh: ProgramMesh, selection: scipy.sparse.csr_arr
         axis = np.where(dofs.node[row.col] == node, dofs.direction[row.col], 0)
         directions[k] = [row.data[axis == direction].sum() for direction in (1, 2, 3)]
         directions[k] /= np.linalg.norm(directions[k]) or 1.0
-    cells = tuple(
-        Cells(kind, kind, np.searchsorted(mesh.number, table)) for kind, table in mesh.cells.items()
-    )
+    cells = tuple(Cells(x, x, np.searchsorted(mesh.number, at)) for x, at in mesh.cells.items())
     moved = motion[translations.ravel()]
     return Geometry(mesh.coordinates, cells, moved, nodes, directions, mesh.number)
 

@@ -186,9 +186,7 @@ def read_mesh_model(table: opt.Table, parameters: Sequence[str]) -> Model | None
     for sensor in structure.sensors:
         if isinstance(sensor.at, int) and sensor.at >= count:
             table.fault(f"sensors {sensor.name}", from_zero("nodes", count, -1), str(sensor.at))
-    tables = [
-        x for kind in ("group", "spring", "mass", "load") for x in listed(table.values.get(kind))
-    ]
+    tables = [x for k in ("group", "spring", "mass", "load") for x in listed(table.values.get(k))]
     names = [x["name"] for x in tables if isinstance(x, dict) and isinstance(x.get("name"), str)]
     expected = "the name of a group, spring, mass or load"
     for parameter in structure.parameters:
