@@ -242,10 +242,13 @@ def compare_weighted(
 
 
 def least_regular(data: xr.Dataset, known: Reference) -> float:
-    """Return the least sum a ln J of equal weights and of the front where no group fits exactly.
+    """Return the least sum a ln J of equal weights and of the front, if it is bounded there.
 
-    A minimum of that sum above it is none worth the name.
+    A minimum of that sum above it is none worth the name. Toward an exact fit of a group the sum
+    falls without bound; what counts there is whether a minimum is regular itself.
     """
+    if (known.floor >= known.J).any():
+        return np.inf
     values = [
         float(known.a @ np.log(row))
         for kind, row in zip(data["kind"].values, data["objective"].values, strict=True)
