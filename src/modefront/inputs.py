@@ -40,7 +40,8 @@ def file_size(path: Path, expected: str, most: int | None = None) -> int:
     except (OSError, ValueError) as error:  # ValueError where the name holds a null
         raise wrong(path, expected, reason(error)) from None
     if kind := KINDS.get(stat.S_IFMT(status.st_mode)):
-        raise wrong(path, expected, kind)
+        inside = sorted(x.name for x in path.glob("*.toml"))[:3]
+        raise wrong(path, expected, f"{kind} with {', '.join(inside)}" if inside else kind)
     if not status.st_size:
         raise wrong(path, expected, "an empty file")
     if most is not None and status.st_size > most:

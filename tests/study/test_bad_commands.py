@@ -13,6 +13,7 @@ from modefront.results.schema import FORMAT
 COMMANDS = [
     (["--colour"], "No such option"),
     (["check"], "Missing argument 'STUDY'"),
+    (["check", "{}"], "file: expected a study file, found a folder with chain.toml, "),
     (["chekc", "{}/chain.toml"], "No such command 'chekc'"),
     (["check", "--fast", "{}/chain.toml"], "No such option"),
     (["check", "{}/chain.toml", "more"], "Got unexpected extra argument (more)"),

@@ -53,12 +53,15 @@ def test_covariances_of_linear_predictions_are_exact_also_at_bounds() -> None:
     assert result >= 40
 
 
-def test_the_gaussian_of_draws_has_the_covariance_of_parameters_in_any_units() -> None:
-    unit, spread = np.array([2e11, 1.0, 1e-12]), [[0.01, 0, 0], [0.03, 0.04, 0], [0, 0, 0.02]]
-    z = np.random.default_rng(0).normal(size=(500, 3)) @ np.transpose(spread)
+@pytest.mark.parametrize("size", [1.0, 1e-7])
+def test_the_gaussian_of_draws_has_the_covariance_of_parameters_in_any_units(size: float) -> None:
+    unit = np.array([2e11, 1.0, 1e-12])
+    spread = size * np.array([[0.01, 0, 0], [0.03, 0.04, 0], [0, 0, 0.02]])
+    z = np.random.default_rng(0).normal(size=(500, 3)) @ spread.T
     draws = Draws(unit * (1 + z), *np.zeros((2, 500, 0)), *np.ones((2, 3)))
     found = Inference(draws, {}, None, None, None, np.zeros((0, 1))).gaussian(1.5 * unit)
-    assert found.covariance / np.outer(unit, unit) == pytest.approx(np.cov(z.T), rel=1e-9)
+    expected = pytest.approx(np.cov(z.T), rel=1e-6, abs=1e-9 * size**2)
+    assert found.covariance / np.outer(unit, unit) == expected
 
 
 def test_errors_of_differences_are_those_of_the_third_derivative() -> None:
