@@ -11,11 +11,10 @@ from interruptions import interrupt_after
 
 import modefront as mf
 from modefront._typing import Floats
-from modefront.analysis.certified import certified_front
+from modefront.analysis import certified
 from modefront.front.front import Front
 from modefront.front.search import Search
 from modefront.identifiability.combinations import Identifiability
-from modefront.study import session
 
 pytestmark = pytest.mark.usefixtures("short_chains")
 
@@ -49,14 +48,14 @@ def problem(*, std: bool) -> mf.UpdatingProblem:
 @cache
 def solved(*, std: bool) -> tuple[xr.Dataset, Front]:
     """Return the results, and the front with all models that were evaluated for it."""
-    fronts: list[Front] = []
+    fronts, search = list[Front](), certified.certified_front
 
     def kept(*given: Any) -> Front:
-        fronts.append(certified_front(*given))
+        fronts.append(search(*given))
         return fronts[-1]
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(session, "certified_front", kept)
+        patch.setattr(certified, "certified_front", kept)
         data = mf.solve(
             *(problem(std=std),),
             points=5,
