@@ -96,6 +96,15 @@ def test_points_of_a_front_converge_and_no_evaluated_model_dominates_them(
     assert set(front.places.tolist()) == set(range(len(J)))
 
 
+def test_what_rounding_takes_at_an_edge_does_not_dominate_it() -> None:
+    """Next to a flat minimum of J1 models have it to all digits, and J2 is less by a slope."""
+    edge, other = np.array([1.0, 4.53]), np.array([2.0, 0.1])
+    for less, optimal in ((5e-6, True), (1e-3, False)):
+        J = np.array([edge, edge - [0, less], other])
+        assert nondominated(J).tolist() == [optimal, True, True]
+        assert undominated(J[:1], J, np.ptp(J, axis=0)).tolist() == [optimal]
+
+
 # ---- edges -----------------------------------------------------------------------------------
 
 
