@@ -71,7 +71,7 @@ class Minima:
 
 
 def _equal(place: Place, x: Solution, y: Solution, tolerance: float) -> bool:
-    """Return whether two minima are of the same value; of edges, those behind the best one are."""
+    """Return whether two minima are of the same value, or as low as each other behind an edge."""
     of = place.subproblem
     behind = min(of.gain(place.incumbent.J, x), of.gain(place.incumbent.J, y)) > tolerance
     tied = isinstance(of, Least) and of.ties(x.J, y.J)
