@@ -185,8 +185,16 @@ def assemble(
     noises = [{x.noise for x in channels if x.reference == each} for each in references]
     noise = tuple(x for each in noises for x in each if x and len(each) == 1 and not turned)
     noise, H = noise if len(noise) == len(references) else (), H if blows > 1 else H[0]
-    data = frequency_responses(f, H, quantity, coherence=coherence, variance=variance)
-    data = replace(data, references=references, responses=responses, decay=decay, force_noise=noise)
+    data = frequency_responses(
+        f,
+        H,
+        quantity,
+        references=references,
+        responses=responses,
+        coherence=coherence,
+        variance=variance,
+    )
+    data = replace(data, decay=decay, force_noise=noise)
     warnings = *_units(name, data, groups, dead), *_reciprocity(name, data, turned)
     return DataSet(name, data, (*warnings, *_driving_points(data, groups)))
 

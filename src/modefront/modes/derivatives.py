@@ -106,18 +106,25 @@ def everywhere(
     shifted, identity = spectrum.factors[nearest[k]], eye_array(len(phi)).tocsr()
     # A factor costs about as many solutions as its columns have entries.
     if steps[k] * right.shape[0] > pencil.analysis.factor_nnz / pencil.size:
-        # One at the mode itself has a spring where most of its mass is. That is at rest under
-        # forces that do no work on the mode: the solution is one without a spring, with some of it.
-        K, M = pencil.K.at(theta), pencil.M.at(theta)
-        dof = int((phi * spectrum.MPhi[:, r]).argmax())
-        row = slice(K.indptr[dof], K.indptr[dof + 1])
-        K.data[row][K.indices[row] == dof] *= 2
-        shifted = pencil.factor(K.data, M.data, float(spectrum.lam[k]))
+        shifted = _pinned(spectrum, k)
     tau = np.array([[shifted.sigma - spectrum.lam[k]]])
     for some, columns in _chunks(right):
         out[:, some] += _forms(shifted, spectrum, columns, tau, identity)[:, 0]
     dphi = -out[:, :p] - 0.5 * phi * (dM @ phi).T
     return phi, dphi[:, None], out[:, p:]
+
+
+def _pinned(spectrum: Spectrum, k: int) -> Factorisation:
+    """Return the factor of K - lam_k M with a spring where mode k moves most.
+
+    Forces that do no work on the mode leave the spring at rest, as all forces together would do
+    work on it otherwise: the solution is one without a spring, and holds some of the mode.
+    """
+    K, M = (A.at(spectrum.theta) for A in (spectrum.pencil.K, spectrum.pencil.M))
+    dof = int((spectrum.Phi[:, k] * spectrum.MPhi[:, k]).argmax())
+    row = slice(K.indptr[dof], K.indptr[dof + 1])
+    K.data[row][K.indices[row] == dof] *= 2
+    return spectrum.pencil.factor(K.data, M.data, float(spectrum.lam[k]))
 
 
 def outside(sensors: csr_array, force: csr_array, spectrum: Spectrum, count: int) -> Floats:

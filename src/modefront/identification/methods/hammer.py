@@ -189,14 +189,7 @@ def _judged(
     kept: Sequence[int],
 ) -> list[ModeEstimate]:
     """Return all modes with what speaks for each; only those that are ``kept`` are neighbours."""
-    task, alike = fit.task, mac(fit.phi.T, fit.phi.T)
-    # The greatest share of every mode, over all functions, at its own frequency.
-    resonances = replace(task, s=1j * np.abs(fit.lam) + task.s[0].real)
-    E = primitives(resonances, fit.lam, squares=False)[: 2 * len(fit.lam)]
-    a = (fit.L.T[:, None, :] * fit.phi.T)[task.weight.any(axis=2)]  # (functions, modes)
-    parts = np.abs(a.real[..., None] * E[::2] + a.imag[..., None] * E[1::2])
-    of_sum = parts / np.maximum(parts.sum(axis=1, keepdims=True), TINY)
-    visible = np.einsum("irr->ir", of_sum).max(axis=0, initial=0.0)
+    visible, alike = _visibility(fit), mac(fit.phi.T, fit.phi.T)
     spacing = float(np.median(np.diff(frequency)))
     out = []
     for r, mode in enumerate(estimates):
@@ -224,7 +217,7 @@ def _judged(
                     f"shape of {other.frequency:.5g} Hz (MAC {alike[r, k]:.2f}): one peak split in "
                     "two, or sensors that cannot tell them apart"
                 )
-            elif len(task.H) == 1 and apart < max(half, other.damping * other.frequency):
+            elif len(fit.task.H) == 1 and apart < max(half, other.damping * other.frequency):
                 flags.append(
                     f"within the half bandwidth of {other.frequency:.5g} Hz: one peak split in "
                     "two, or two modes that one reference cannot tell apart"
@@ -232,3 +225,14 @@ def _judged(
         g, share, seen = float(gain[r]), float(shares[r]), float(visible[r])
         out.append(replace(mode, gain=g, support=share, visibility=seen, flags=tuple(flags)))
     return out
+
+
+def _visibility(fit: Fit) -> Floats:
+    """Return the greatest share of every mode, over all functions, at its own frequency."""
+    task = fit.task
+    resonances = replace(task, s=1j * np.abs(fit.lam) + task.s[0].real)
+    E = primitives(resonances, fit.lam, squares=False)[: 2 * len(fit.lam)]
+    a = (fit.L.T[:, None, :] * fit.phi.T)[task.weight.any(axis=2)]  # (functions, modes)
+    parts = np.abs(a.real[..., None] * E[::2] + a.imag[..., None] * E[1::2])
+    shares = parts / np.maximum(parts.sum(axis=1, keepdims=True), TINY)
+    return np.einsum("irr->ir", shares).max(axis=0, initial=0.0)
