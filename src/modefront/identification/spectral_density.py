@@ -155,10 +155,17 @@ class Density:
         power = self.force[mode, mode].real * np.average(np.abs(h) ** 2, weights=band.count)
         root: Complexes = np.linalg.qr(self.root[kept].conj().T)[1].conj().T
         terms = np.arange(self.coherent.shape[1]) % max(self.free, 1) != mode
-        omega, zeta, others = self.omega[kept], self.zeta[kept], self.phi[:, kept]
-        B, R = self.background + power * np.outer(phi, phi), self.coherent[:, terms]
-        out = replace(self, omega=omega, zeta=zeta, phi=others, root=root, background=B, coherent=R)
-        return replace(out, free=self.free - (mode < self.free), precision=self.precision[terms])
+        return replace(
+            self,
+            omega=self.omega[kept],
+            zeta=self.zeta[kept],
+            phi=self.phi[:, kept],
+            root=root,
+            background=self.background + power * np.outer(phi, phi),
+            free=self.free - (mode < self.free),
+            coherent=self.coherent[:, terms],
+            precision=self.precision[terms],
+        )
 
 
 class Fit:

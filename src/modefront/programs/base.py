@@ -125,8 +125,8 @@ def read_job(program: str, path: Path, options: JobOptions) -> Job:
     """Return a job of a program; raises InputError where its files cannot be read."""
     given = (program, *(str(text or "") for text in astuple(options)))
     reader, expected = f"{__name__}:parts_of_job", f"a job of {program}"
-    parts = isolated(reader, path, expected, arguments=given)
-    name, *matrices, dofs, precision, mesh, notes = parts
+    job = isolated(reader, path, expected, arguments=given)
+    name, *matrices, dofs, precision, mesh, notes = job
     K, M = (Matrix(parts, shape=(dofs.size, dofs.size)) for parts in matrices)
     return Job(name, K, M, dofs, precision, mesh, notes)
 

@@ -4,7 +4,6 @@ Second derivatives are those of Gauss and Newton, or all of them.
 """
 
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
@@ -158,20 +157,10 @@ class UpdatingProblem(Shown):
         if not derivatives:
             J = np.array([r @ r for r in self.vectors(modes, pairs)])
             return Evaluation(theta, J, quantities=quantities)
-        rest: Floats | None = None  # second derivatives of J beyond Gauss-Newton's
         if second:
-            found, curvatures = [], []
-            for row in self._stacks:
-                r, dr, parts = zip(*(x.with_curvature(modes, pairs) for x in row), strict=True)
-                found.append(Residual(np.concatenate(r), np.concatenate(dr)))
-                names = ("w", "v", "own")
-                curvatures.append([sum(getattr(x, name) for x in parts) for name in names])
-            residuals, (w, v, own) = tuple(found), map(np.array, zip(*curvatures, strict=True))
-            with suppress(ModelError):  # an iteration fails that first derivatives do not need
-                of_modes = modes.second_derivatives(w, v)
-                rest = None if of_modes is None else own + of_modes
+            residuals, rest = self._with_curvature(modes, pairs)
         else:
-            residuals = self.residuals_at(modes, pairs)
+            residuals, rest = self.residuals_at(modes, pairs), None
         J = np.array([x.r @ x.r for x in residuals])
         dJ = np.array([2 * x.r @ x.dr for x in residuals])
         H = np.array([2 * x.dr.T @ x.dr for x in residuals])
@@ -216,6 +205,22 @@ class UpdatingProblem(Shown):
             "frequency": modes.dfrequency[pairs.index],
             "mac": mac_slopes(self.data, pairs, modes.phi, modes.dphi),
         }
+
+    def _with_curvature(
+        self, modes: Modes, pairs: Pairs
+    ) -> tuple[tuple[Residual, ...], Floats | None]:
+        """Return these, and second derivatives of J beyond Gauss-Newton's where they are known."""
+        residuals, curvatures = [], []
+        for row in self._stacks:
+            r, dr, parts = zip(*(x.with_curvature(modes, pairs) for x in row), strict=True)
+            residuals.append(Residual(np.concatenate(r), np.concatenate(dr)))
+            curvatures.append([sum(getattr(x, name) for x in parts) for name in ("w", "v", "own")])
+        w, v, own = map(np.array, zip(*curvatures, strict=True))
+        try:
+            of_modes = modes.second_derivatives(w, v)
+        except ModelError:  # an iteration fails that first derivatives do not need
+            of_modes = None
+        return tuple(residuals), None if of_modes is None else own + of_modes
 
     def vectors(self, modes: Modes, pairs: Pairs) -> list[Floats]:
         """Return the residual vector of each group without derivatives."""
